@@ -23,8 +23,11 @@ def required(name: str) -> list[str]:
     folder = Path(__file__).resolve().parent / 'requirements'
     lines = (folder / f'{name}.pip').read_text(encoding='utf-8').splitlines()
     entries = (line.partition('#')[0].strip() for line in lines)
-    return [re.sub(r'^([\w.-]+)==', r'\1~=', entry)
-            for entry in entries if entry and not entry.startswith('-r ')]
+    return [
+        re.sub(r'^([\w.-]+)==', r'\1~=', entry)
+        for entry in entries
+        if entry and not entry.startswith('-r ')
+    ]
 
 
 setup(
@@ -38,7 +41,8 @@ setup(
     package_data={'': ['config/*', 'models/*/*.sdf', 'models/*/meshes/*', 'worlds/*', 'py.typed']},
     # The robot, where its package:// addresses lead; catkin installs it there, too.
     data_files=[
-        (f'share/{told("name")}/{folder}', files) for folder in ('', 'meshes', 'urdf')
+        (f'share/{told("name")}/{folder}', files)
+        for folder in ('', 'meshes', 'urdf')
         if (files := glob(f'{folder}/*') if folder else ['package.xml'])
     ],
     # Of `sim` and the command line; what the ROS side needs comes from Debian, as package.xml says.

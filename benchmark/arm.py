@@ -61,19 +61,30 @@ class Arm:
         self._server = server
         example = runpy.run_path(str(ROOT / 'scripts' / 'pick_and_place.py'))
         self._joints, self._reach = example['JOINTS'], example['reach']
-        self._command = rospy.Publisher('/arm/arm_controller/command', JointTrajectory,
-                                        queue_size=1)
-        self._gripper = actionlib.SimpleActionClient('/arm/gripper_controller/gripper_cmd',
-                                                     GripperCommandAction)
+        self._command = rospy.Publisher(
+            '/arm/arm_controller/command', JointTrajectory, queue_size=1
+        )
+        self._gripper = actionlib.SimpleActionClient(
+            '/arm/gripper_controller/gripper_cmd', GripperCommandAction
+        )
         wait_until(self._command.get_num_connections, 'the controller of the arm')
         wait_until(lambda: self._gripper.wait_for_server(rospy.Duration(1)), 'the gripper')
 
     def follow(self, places: Sequence[Place], seconds: float) -> None:
         """Move through places, each `seconds` [s, simulated] after the one before."""
-        self._command.publish(JointTrajectory(joint_names=self._joints, points=[
-            JointTrajectoryPoint(positions=self._reach(*place), velocities=[0.0] * 7,
-                                 time_from_start=rospy.Duration.from_sec(seconds * (number + 1)))
-            for number, place in enumerate(places)]))
+        self._command.publish(
+            JointTrajectory(
+                joint_names=self._joints,
+                points=[
+                    JointTrajectoryPoint(
+                        positions=self._reach(*place),
+                        velocities=[0.0] * 7,
+                        time_from_start=rospy.Duration.from_sec(seconds * (number + 1)),
+                    )
+                    for number, place in enumerate(places)
+                ],
+            )
+        )
 
     def move(self, place: Place) -> None:
         """Move to a place and stand there."""
@@ -149,20 +160,26 @@ def table(found: Sequence[Measured]) -> str:
     rows = ['times real time    min  median     max   bare PyBullet  of bare  processor s/s  load']
     for case, pairs, cost, load in found:
         ours = [one for one, _ in pairs]
-        rows.append(f'{case:15} {min(ours):6.1f} {median(ours):7.1f} {max(ours):7.1f} '
-                    f'{median(bare for _, bare in pairs):15.1f} '
-                    f'{median(one / bare for one, bare in pairs):8.2f} {cost:14.3f} {load:5.1f}')
+        rows.append(
+            f'{case:15} {min(ours):6.1f} {median(ours):7.1f} {max(ours):7.1f} '
+            f'{median(bare for _, bare in pairs):15.1f} '
+            f'{median(one / bare for one, bare in pairs):8.2f} {cost:14.3f} {load:5.1f}'
+        )
     worst = min(found, key=lambda one: one.middle)
     verdict = 'met' if worst.middle >= TARGET else 'NOT met'
-    rows.append(f'slowest, while it {worst.case}: {worst.middle:.1f} times real time '
-                f'(target {TARGET:g}: {verdict}), {1.0 / worst.cost:.1f} by its processor time')
+    rows.append(
+        f'slowest, while it {worst.case}: {worst.middle:.1f} times real time '
+        f'(target {TARGET:g}: {verdict}), {1.0 / worst.cost:.1f} by its processor time'
+    )
     return '\n'.join(rows)
 
 
 def main() -> int:
     """Print the table; return the exit code."""
-    print('the arm of arm.launch, whole server, efforts at 1 kHz, no clients but its '
-          'robot_state_publisher')
+    print(
+        'the arm of arm.launch, whole server, efforts at 1 kHz, no clients but its '
+        'robot_state_publisher'
+    )
     print(table(run_in_new_process(measure)))
     return 0
 

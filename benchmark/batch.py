@@ -28,14 +28,24 @@ SHORT = 1000  # runs of one step, to see what a run costs beside the simulation
 SCENARIO: dict[str, Any] = {
     'duration': 10.0,
     'world': 'room',
-    'models': [{
-        'name': 'rosbots', 'file': 'package://rosbots_description/urdf/rosbots.xacro',
-        'pose': {'z': 0.5, 'yaw': '$yaw'}}],
-    'commands': [{'at': 1.0, 'topic': '/part2_cmr/cmd_vel',
-                  'message': {'linear': {'x': '$speed'}, 'angular': {'z': 0.2}}}],
+    'models': [
+        {
+            'name': 'rosbots',
+            'file': 'package://rosbots_description/urdf/rosbots.xacro',
+            'pose': {'z': 0.5, 'yaw': '$yaw'},
+        }
+    ],
+    'commands': [
+        {
+            'at': 1.0,
+            'topic': '/part2_cmr/cmd_vel',
+            'message': {'linear': {'x': '$speed'}, 'angular': {'z': 0.2}},
+        }
+    ],
     'record': {
         'x': {'model': 'rosbots', 'value': 'pose.position.x'},
-        'odom_x': {'topic': '/rosbots/odom', 'value': 'pose.position.x'}},
+        'odom_x': {'topic': '/rosbots/odom', 'value': 'pose.position.x'},
+    },
     'conditions': ['abs(x_end - odom_x_end) < 0.1'],
     'parameters': {'yaw': {'uniform': [-3.14, 3.14]}, 'speed': {'uniform': [0.1, 0.5]}},
     'seed': 1,
@@ -103,8 +113,10 @@ def costs(workers: int) -> None:
     first.clear()
     run(EMPTY, workers=0, progress=note)
     alone = (first[-1] - first[0]) / (SHORT - 1)
-    print(f'a run of one step: {1000 * alone:.1f} ms in one process, {1000 * on_ray:.1f} ms of a '
-          f'worker on Ray')
+    print(
+        f'a run of one step: {1000 * alone:.1f} ms in one process, {1000 * on_ray:.1f} ms of a '
+        f'worker on Ray'
+    )
 
 
 def main() -> int:

@@ -14,7 +14,9 @@ class Child:
         """Start the program."""
         self._process = subprocess.Popen(
             [sys.executable, program, *arguments],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
         )
 
     def __enter__(self) -> Self:

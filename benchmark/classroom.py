@@ -59,8 +59,14 @@ class Viewer:
 
     def wait_for(self, model: str, drives: bool) -> None:
         """Wait until the page shows a model, and has a button to drive if it is to."""
-        self.browser.wait_until(lambda: self._node(model) and self._clock() and (
-            not drives or self.browser.control('Forward')), PATIENCE)
+        self.browser.wait_until(
+            lambda: (
+                self._node(model)
+                and self._clock()
+                and (not drives or self.browser.control('Forward'))
+            ),
+            PATIENCE,
+        )
 
     def watch(self, model: str, ready: Ready, drives: bool) -> None:
         """Look for a window of time, and drive if that is wanted, once all viewers see a model."""
@@ -75,8 +81,10 @@ class Viewer:
                 self.browser.hold('Forward')
                 commanded = now
             self.browser.read(0.05)
-            self.frames += sum(message['type'] == 'SetPositionMessage' and message['name'] == node
-                               for message in self.browser.messages)
+            self.frames += sum(
+                message['type'] == 'SetPositionMessage' and message['name'] == node
+                for message in self.browser.messages
+            )
             self.browser.messages.clear()
             if now - looked > POLL:
                 self.clocks.append(self._clock() or (0.0, 0.0))
@@ -90,23 +98,28 @@ class Viewer:
         return (last - first) / max(ended - begun, 1e-9)
 
     def _node(self, model: str) -> str:
-        return next((node for node in self.browser.nodes if re.fullmatch(
-            f'/models/{model}/[^/]+', node)), '')
+        return next(
+            (node for node in self.browser.nodes if re.fullmatch(f'/models/{model}/[^/]+', node)),
+            '',
+        )
 
     def _clock(self) -> tuple[float, float] | None:
         match = CLOCK.search('\n'.join(self.browser.texts()))
         if match is None:
             return None
         hours, minutes, seconds, *real = map(float, match.groups())
-        return (3600.0 * hours + 60.0 * minutes + seconds,
-                3600.0 * real[0] + 60.0 * real[1] + real[2])
+        return (
+            3600.0 * hours + 60.0 * minutes + seconds,
+            3600.0 * real[0] + 60.0 * real[1] + real[2],
+        )
 
 
 def watch_all(viewers: Sequence[Viewer], model: str, drives: bool) -> None:
     """Let all viewers look at once, each on a thread; all read meanwhile, or they would be slow."""
     ready = Ready(len(viewers))
-    threads = [threading.Thread(target=viewer.watch, args=(model, ready, drives))
-               for viewer in viewers]
+    threads = [
+        threading.Thread(target=viewer.watch, args=(model, ready, drives)) for viewer in viewers
+    ]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -117,10 +130,12 @@ def tell(what: str, viewers: Sequence[Viewer]) -> None:
     """Print the median and the least of what the viewers saw."""
     factors = [viewer.factor for viewer in viewers]
     rates = [viewer.frames / WINDOW for viewer in viewers]
-    print(f'{what}: real-time factor {statistics.median(factors):.2f}, the least '
-          f'{min(factors):.2f} (target {LEAST_FACTOR:g}); a viewer gets '
-          f'{statistics.median(rates):.0f} frames per second, the least {min(rates):.0f} '
-          f'(target {LEAST_RATE:g})')
+    print(
+        f'{what}: real-time factor {statistics.median(factors):.2f}, the least '
+        f'{min(factors):.2f} (target {LEAST_FACTOR:g}); a viewer gets '
+        f'{statistics.median(rates):.0f} frames per second, the least {min(rates):.0f} '
+        f'(target {LEAST_RATE:g})'
+    )
 
 
 def measure_viewers() -> None:
@@ -154,9 +169,13 @@ def measure_worlds() -> None:
     with ExitStack() as stack:
         viewers, numbers = [], []
         for _ in range(WORLDS):
-            process = stack.enter_context(subprocess.Popen(
-                [sys.executable, '-m', 'rosbots_description.cli.view', str(ROBOT), '--no-open'],
-                stderr=subprocess.PIPE, text=True))
+            process = stack.enter_context(
+                subprocess.Popen(
+                    [sys.executable, '-m', 'rosbots_description.cli.view', str(ROBOT), '--no-open'],
+                    stderr=subprocess.PIPE,
+                    text=True,
+                )
+            )
             stack.callback(process.terminate)
             numbers.append(process.pid)
             assert process.stderr is not None
@@ -167,10 +186,14 @@ def measure_worlds() -> None:
         begin = time.monotonic()
         watch_all(viewers, 'rosbots', drives=True)
         passed = time.monotonic() - begin
-        used = [100.0 * (cpu_seconds(number) - one) / passed
-                for number, one in zip(numbers, before, strict=True)]
-        print(f'a world with its page: {statistics.median(used):.0f} % of a core, '
-              f'{statistics.median(map(megabytes, numbers)):.0f} MB')
+        used = [
+            100.0 * (cpu_seconds(number) - one) / passed
+            for number, one in zip(numbers, before, strict=True)
+        ]
+        print(
+            f'a world with its page: {statistics.median(used):.0f} % of a core, '
+            f'{statistics.median(map(megabytes, numbers)):.0f} MB'
+        )
         tell(f'{WORLDS} worlds with a viewer each', viewers)
 
 

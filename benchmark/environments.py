@@ -161,8 +161,9 @@ def ros(exact: bool) -> Iterator[Steps]:
     from ros_environment import RosGoToGoal
 
     rospy.init_node('environment', anonymous=True, disable_signals=True)
-    yield _episodes(gymnasium.wrappers.TimeLimit(RosGoToGoal(exact, bumper=False), 400),
-                    _towards_goal)
+    yield _episodes(
+        gymnasium.wrappers.TimeLimit(RosGoToGoal(exact, bumper=False), 400), _towards_goal
+    )
     rospy.signal_shutdown('measured')
 
 
@@ -178,15 +179,22 @@ def r2d2() -> Iterator[Steps]:
     pybullet.setGravity(0, 0, -9.8, client)
     pybullet.loadURDF('plane.urdf', physicsClientId=client)
     robot = pybullet.loadURDF('r2d2.urdf', [0.0, 0.0, 0.5], physicsClientId=client)
-    wheels = [joint for joint in range(pybullet.getNumJoints(robot, client))
-              if b'wheel' in pybullet.getJointInfo(robot, joint, client)[1]]
+    wheels = [
+        joint
+        for joint in range(pybullet.getNumJoints(robot, client))
+        if b'wheel' in pybullet.getJointInfo(robot, joint, client)[1]
+    ]
 
     def step(steps: int) -> None:
         for _ in range(steps):
             pybullet.setJointMotorControlArray(
-                robot, wheels, pybullet.VELOCITY_CONTROL,
-                targetVelocities=[WHEEL_SPEED] * len(wheels), forces=[WHEEL_TORQUE] * len(wheels),
-                physicsClientId=client)
+                robot,
+                wheels,
+                pybullet.VELOCITY_CONTROL,
+                targetVelocities=[WHEEL_SPEED] * len(wheels),
+                forces=[WHEEL_TORQUE] * len(wheels),
+                physicsClientId=client,
+            )
             for _ in range(ENGINE_STEPS):
                 pybullet.stepSimulation(client)
             pybullet.getBasePositionAndOrientation(robot, client)
@@ -200,11 +208,18 @@ def main() -> int:
     logging.disable(logging.WARNING)
     kind = sys.argv[1]
     loops: dict[str, Callable[[], AbstractContextManager[Steps]]] = {
-        'goal': goal, 'reset': reset, 'r2d2': r2d2, 'mujoco': mujoco,
-        'vector': lambda: vector(one_core=False), 'core': lambda: vector(one_core=True),
-        'step': lambda: ros(exact=True), 'pause': lambda: ros(exact=False),
-        'wander': lambda: task('Wander'), 'maze': lambda: task('Maze'),
-        'line': lambda: task('FollowLine')}
+        'goal': goal,
+        'reset': reset,
+        'r2d2': r2d2,
+        'mujoco': mujoco,
+        'vector': lambda: vector(one_core=False),
+        'core': lambda: vector(one_core=True),
+        'step': lambda: ros(exact=True),
+        'pause': lambda: ros(exact=False),
+        'wander': lambda: task('Wander'),
+        'maze': lambda: task('Maze'),
+        'line': lambda: task('FollowLine'),
+    }
     with loops.get(kind, lambda: part(kind))() as step:
         answer(step)
     return 0

@@ -130,8 +130,10 @@ def main(arguments: Sequence[str]) -> int:
     for reference in ('Gazebo', 'mechanics'):
         compared = [one for one in found if one.reference == reference]
         beyond = {(one.scene, one.quantity) for one in compared if one.share > 1.0}
-        print(f'{len(compared)} quantities compared with {reference}, '
-              f'{len(beyond)} of them outside their tolerance')
+        print(
+            f'{len(compared)} quantities compared with {reference}, '
+            f'{len(beyond)} of them outside their tolerance'
+        )
     return 0
 
 

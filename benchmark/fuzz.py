@@ -20,7 +20,9 @@ def main(arguments: list[str]) -> int:
     own = arguments or ['-k', 'properties', 'test/unit', 'test/engine']
     return subprocess.run(
         [sys.executable, '-m', 'pytest', '-q', '-n', 'auto', '--hypothesis-profile=search', *own],
-        cwd=ROOT, check=False).returncode
+        cwd=ROOT,
+        check=False,
+    ).returncode
 
 
 if __name__ == '__main__':

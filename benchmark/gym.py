@@ -23,8 +23,20 @@ from server import Server, run_in_new_process
 WINDOW = 1.0  # [s, wall]
 ROUNDS = 8  # windows of each loop
 PARTS = ('goal_physics', 'goal_scan', 'mujoco_physics', 'mujoco_scan')
-KINDS = ('goal', 'mujoco', 'wander', 'maze', 'line', *PARTS, 'reset', 'vector', 'core', 'step',
-         'pause', 'r2d2')
+KINDS = (
+    'goal',
+    'mujoco',
+    'wander',
+    'maze',
+    'line',
+    *PARTS,
+    'reset',
+    'vector',
+    'core',
+    'step',
+    'pause',
+    'r2d2',
+)
 PERIOD = 0.1  # [s, simulated] of a control step
 RESET = 2.0  # [ms] at most
 FASTER = 20.0  # least ratio to the task over ROS with pause and unpause, and to real time
@@ -54,8 +66,10 @@ def measure() -> dict[str, list[float]]:
                 loop.begin(WINDOW)
             windows['cores'].append(sum(loop.end() for loop in together))
     a_step_of_each = {'vector': PER_CORE * cores(), 'core': PER_CORE}
-    return {kind: [speed * a_step_of_each.get(kind, 1) for speed in found]
-            for kind, found in windows.items()}
+    return {
+        kind: [speed * a_step_of_each.get(kind, 1) for speed in found]
+        for kind, found in windows.items()
+    }
 
 
 def _started(kind: str) -> EnvironmentLoop:
@@ -71,24 +85,32 @@ def table(windows: Mapping[str, Sequence[float]], count: int) -> str:
     one, linear, vector = speeds['goal'], speeds['goal'] * count, speeds['vector']
     rows = [
         'environment                              steps/s  x real time  least-greatest',
-        *(f'{name:38}{speeds[kind]:10.1f}{speeds[kind] * PERIOD:13.1f}'
-          f'{min(windows[kind]):10.0f}-{max(windows[kind]):.0f}' for name, kind in (
-            ('GoToGoal-v0, one process', 'goal'),
-            ('Wander-v0', 'wander'),
-            ('Maze-v0', 'maze'),
-            ('FollowLine-v0', 'line'),
-            ('the task of GoToGoal in MuJoCo', 'mujoco'),
-            (f'GoToGoal-v0, a process on {count} cores', 'cores'),
-            (f'GoToGoal-v0, make_vec of {PER_CORE} on one core', 'core'),
-            (f'GoToGoal-v0, make_vec of {PER_CORE * count}', 'vector'),
-            ('over ROS by /gazebo/step', 'step'),
-            ('over ROS by unpause, wait, pause', 'pause'),
-            ('R2D2 of PyBullet, bare loop', 'r2d2'))),
+        *(
+            f'{name:38}{speeds[kind]:10.1f}{speeds[kind] * PERIOD:13.1f}'
+            f'{min(windows[kind]):10.0f}-{max(windows[kind]):.0f}'
+            for name, kind in (
+                ('GoToGoal-v0, one process', 'goal'),
+                ('Wander-v0', 'wander'),
+                ('Maze-v0', 'maze'),
+                ('FollowLine-v0', 'line'),
+                ('the task of GoToGoal in MuJoCo', 'mujoco'),
+                (f'GoToGoal-v0, a process on {count} cores', 'cores'),
+                (f'GoToGoal-v0, make_vec of {PER_CORE} on one core', 'core'),
+                (f'GoToGoal-v0, make_vec of {PER_CORE * count}', 'vector'),
+                ('over ROS by /gazebo/step', 'step'),
+                ('over ROS by unpause, wait, pause', 'pause'),
+                ('R2D2 of PyBullet, bare loop', 'r2d2'),
+            )
+        ),
         'part of a control step [ms]               ours     MuJoCo   quotient',
-        *(_part(name, *pair) for name, *pair in (
-            ('100 steps of physics', *_costs(windows, '_physics')),
-            ('a scan of 361 rays', *_costs(windows, '_scan')),
-            ('the rest: commands, reward, resets', *_rest(windows)))),
+        *(
+            _part(name, *pair)
+            for name, *pair in (
+                ('100 steps of physics', *_costs(windows, '_physics')),
+                ('a scan of 361 rays', *_costs(windows, '_scan')),
+                ('the rest: commands, reward, resets', *_rest(windows)),
+            )
+        ),
         _row('per core, x real time with 361 rays', one * PERIOD, FASTER),
         _row('/ the same task in MuJoCo', _quotient(windows, 'goal', 'mujoco'), OF_MUJOCO),
         _row('/ over ROS by unpause, wait, pause', one / speeds['pause'], FASTER),
@@ -136,7 +158,7 @@ def _row(name: str, value: float, target: float | None = None, at_most: bool = F
 def main() -> int:
     """Print the table; return the exit code."""
     print(table(run_in_new_process(measure), cores()))
-    load, = os.getloadavg()[:1]
+    (load,) = os.getloadavg()[:1]
     print(f'load of the machine, mean of the last minute: {load:.1f} on {cores()} cores')
     return 0
 

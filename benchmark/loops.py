@@ -51,7 +51,8 @@ def bare(robots: int, driving: bool, robot: str, flags: int = 0) -> Iterator[Ste
         file.flush()
         bodies = [
             pybullet.loadURDF(
-                file.name, [0.0, DISTANCE * i, 0.2], flags=flags, physicsClientId=client)
+                file.name, [0.0, DISTANCE * i, 0.2], flags=flags, physicsClientId=client
+            )
             for i in range(robots)
         ]
 
@@ -70,8 +71,12 @@ def _drive(body: int, client: int) -> None:
     for joint in range(pybullet.getNumJoints(body, client)):
         if pybullet.getJointInfo(body, joint, client)[2] == pybullet.JOINT_REVOLUTE:
             pybullet.setJointMotorControl2(
-                body, joint, pybullet.VELOCITY_CONTROL, targetVelocity=WHEEL_SPEED,
-                force=WHEEL_TORQUE, physicsClientId=client,
+                body,
+                joint,
+                pybullet.VELOCITY_CONTROL,
+                targetVelocity=WHEEL_SPEED,
+                force=WHEEL_TORQUE,
+                physicsClientId=client,
             )
 
 

@@ -60,8 +60,10 @@ class _Writer:
             case Mesh() as mesh:
                 form = f'type="mesh" mesh={quoteattr(self.mesh(mesh))}'
         friction = 0.0 if static else min(shape.surface.greatest_mu, MOST_FRICTION)
-        return (f'<geom name={quoteattr(name)} {form} {_placed(shape.pose)} '
-                f'friction={_numbers(friction, 0.0, 0.0)} condim="3"/>')
+        return (
+            f'<geom name={quoteattr(name)} {form} {_placed(shape.pose)} '
+            f'friction={_numbers(friction, 0.0, 0.0)} condim="3"/>'
+        )
 
     def mesh(self, mesh: Mesh) -> str:
         """Return the name of a mesh."""
@@ -76,16 +78,22 @@ class _Writer:
 
     def body(self, model: Any, link: Any, world_pose: Any, joints: str, inner: str) -> str:  # noqa: ANN401
         """Return a link as a body; `joints` and `inner` are what else is in it."""
-        geoms = ''.join(self.geom(one, f'{model.name}/{link.name}/{one.name}', model.static)
-                        for one in link.collisions)
+        geoms = ''.join(
+            self.geom(one, f'{model.name}/{link.name}/{one.name}', model.static)
+            for one in link.collisions
+        )
         mass = ''
         if not model.static:
             own = link.mass_properties
-            mass = (f'<inertial mass={_numbers(own.mass)} pos={_numbers(*own.pose.position)} '
-                    f'fullinertia={_numbers(own.ixx, own.iyy, own.izz, own.ixy, own.ixz, own.iyz)}'
-                    '/>')
-        return (f'<body name={quoteattr(f"{model.name}/{link.name}")} {_placed(world_pose)}>'
-                f'{joints}{mass}{geoms}{inner}</body>')
+            mass = (
+                f'<inertial mass={_numbers(own.mass)} pos={_numbers(*own.pose.position)} '
+                f'fullinertia={_numbers(own.ixx, own.iyy, own.izz, own.ixy, own.ixz, own.iyz)}'
+                '/>'
+            )
+        return (
+            f'<body name={quoteattr(f"{model.name}/{link.name}")} {_placed(world_pose)}>'
+            f'{joints}{mass}{geoms}{inner}</body>'
+        )
 
     def model(self, model: Any, torque: float) -> str:  # noqa: ANN401
         """Return a model whose joints, if any, are wheels below its first link."""
@@ -95,13 +103,16 @@ class _Writer:
         free = '' if model.static else f'<freejoint name={quoteattr(model.name)}/>'
         inner = ''
         for link in others:
-            joint, = (one for one in model.spec.joints if one.child == link.name)
-            hinge = (f'<joint name={quoteattr(joint.name)} type="hinge" '
-                     f'axis={_numbers(*joint.axis_in_child)} '
-                     f'pos={_numbers(*joint.pose.position)}/>')
+            (joint,) = (one for one in model.spec.joints if one.child == link.name)
+            hinge = (
+                f'<joint name={quoteattr(joint.name)} type="hinge" '
+                f'axis={_numbers(*joint.axis_in_child)} '
+                f'pos={_numbers(*joint.pose.position)}/>'
+            )
             self.actuators.append(
                 f'<velocity joint={quoteattr(joint.name)} kv="{GAIN}" '
-                f'forcerange="{-torque} {torque}"/>')
+                f'forcerange="{-torque} {torque}"/>'
+            )
             inner += self.body(model, link, compose(inverse(root.pose), link.pose), hinge, '')
         return self.body(model, root, model.links[root.name].pose, free, inner)
 
@@ -111,10 +122,12 @@ def mjcf(task: GoToGoal) -> str:
     writer, drive = _Writer(), task.robot.plugin('diff_drive')
     bodies = ''.join(writer.model(one, drive.wheel_torque) for one in task.world.models.values())
     gravity, step = task.world.physics.gravity, task.world.physics.step_size
-    return (f'<mujoco><compiler angle="radian" balanceinertia="true"/><option timestep="{step}" '
-            f'gravity={_numbers(*gravity)} integrator="implicitfast"/>'
-            f'<asset>{"".join(writer.assets())}</asset><worldbody>{bodies}</worldbody>'
-            f'<actuator>{"".join(writer.actuators)}</actuator></mujoco>')
+    return (
+        f'<mujoco><compiler angle="radian" balanceinertia="true"/><option timestep="{step}" '
+        f'gravity={_numbers(*gravity)} integrator="implicitfast"/>'
+        f'<asset>{"".join(writer.assets())}</asset><worldbody>{bodies}</worldbody>'
+        f'<actuator>{"".join(writer.actuators)}</actuator></mujoco>'
+    )
 
 
 class MujocoGoToGoal:
@@ -141,9 +154,13 @@ class MujocoGoToGoal:
         number = mujoco.mj_name2id
         kinds = mujoco.mjtObj
         self._motors = [
-            next(k for k in range(self.model.nu)
-                 if self.model.actuator_trnid[k, 0] == number(self.model, kinds.mjOBJ_JOINT, name))
-            for name in wheels]
+            next(
+                k
+                for k in range(self.model.nu)
+                if self.model.actuator_trnid[k, 0] == number(self.model, kinds.mjOBJ_JOINT, name)
+            )
+            for name in wheels
+        ]
         self._base = number(self.model, kinds.mjOBJ_BODY, f'rosbots/{base}')
         free = number(self.model, kinds.mjOBJ_JOINT, 'rosbots')
         self._place, self._speed = self.model.jnt_qposadr[free], self.model.jnt_dofadr[free]
@@ -168,7 +185,8 @@ class MujocoGoToGoal:
         return self._observe(), {}
 
     def step(
-        self, action: Any,  # noqa: ANN401
+        self,
+        action: Any,  # noqa: ANN401
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Drive for a control period."""
         linear, angular = np.clip(np.asarray(action, float), -1.0, 1.0) * self._limits
@@ -182,8 +200,13 @@ class MujocoGoToGoal:
         if self.bumps():
             return seen, BUMPED, True, False, {}
         is_there = self._left < REACHED
-        return (seen, before - self._left + is_there, is_there, self._count >= LIMIT,
-                {'is_success': is_there})
+        return (
+            seen,
+            before - self._left + is_there,
+            is_there,
+            self._count >= LIMIT,
+            {'is_success': is_there},
+        )
 
     def advance(self) -> None:
         """Make the steps of a control period."""
@@ -199,7 +222,7 @@ class MujocoGoToGoal:
     @property
     def pose(self) -> tuple[float, float, float]:
         """Return the robot's x, y [m] and yaw [rad]."""
-        x, y, _, w, i, j, k = self.data.qpos[self._place:self._place + 7].tolist()
+        x, y, _, w, i, j, k = self.data.qpos[self._place : self._place + 7].tolist()
         return x, y, yaw_of((i, j, k, w))
 
     def _place_freely(
@@ -209,23 +232,39 @@ class MujocoGoToGoal:
         while True:
             x, y = self._random.uniform(*xs), self._random.uniform(*ys)
             yaw = self._random.uniform(-math.pi, math.pi)
-            self.data.qpos[place:place + 2] = x, y
-            self.data.qpos[place + 3:place + 7] = math.cos(yaw / 2.0), 0.0, 0.0, math.sin(yaw / 2.0)
+            self.data.qpos[place : place + 2] = x, y
+            self.data.qpos[place + 3 : place + 7] = (
+                math.cos(yaw / 2.0),
+                0.0,
+                0.0,
+                math.sin(yaw / 2.0),
+            )
             mujoco.mj_forward(self.model, self.data)
             if not self.bumps():
                 return x, y
 
     def _observe(self) -> dict[str, Any]:
         x, y, yaw = self.pose
-        vx, vy = self.data.qvel[self._speed:self._speed + 2].tolist()
+        vx, vy = self.data.qvel[self._speed : self._speed + 2].tolist()
         cos, sin = math.cos(yaw), math.sin(yaw)
         bearing = math.atan2(self._goal[1] - y, self._goal[0] - x) - yaw
         return {
             'laser': self.scan(),
-            'odometry': np.array((x, y, yaw, cos * vx + sin * vy, cos * vy - sin * vx,
-                                  self.data.qvel[self._speed + 5]), np.float32),
-            'goal': np.array((math.dist((x, y), self._goal), math.cos(bearing),
-                              math.sin(bearing)), np.float32)}
+            'odometry': np.array(
+                (
+                    x,
+                    y,
+                    yaw,
+                    cos * vx + sin * vy,
+                    cos * vy - sin * vx,
+                    self.data.qvel[self._speed + 5],
+                ),
+                np.float32,
+            ),
+            'goal': np.array(
+                (math.dist((x, y), self._goal), math.cos(bearing), math.sin(bearing)), np.float32
+            ),
+        }
 
     def scan(self) -> Any:  # noqa: ANN401
         """Return the ranges of the scan [m], the greatest without a hit."""
@@ -233,6 +272,18 @@ class MujocoGoToGoal:
         origin = self.data.xpos[self._base] + turn @ self._sensor.position
         hit, ranges = self._found
         ways = self._ways @ turn.T
-        mujoco.mj_multiRay(self.model, self.data, origin, ways.ravel(), None, True, -1, hit, ranges,
-                           None, len(hit), self._range)
+        mujoco.mj_multiRay(
+            self.model,
+            self.data,
+            origin,
+            ways.ravel(),
+            None,
+            True,
+            -1,
+            hit,
+            ranges,
+            None,
+            len(hit),
+            self._range,
+        )
         return np.where(ranges < 0.0, self._range, ranges).astype(np.float32)

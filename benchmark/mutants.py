@@ -41,15 +41,38 @@ if TYPE_CHECKING:
     import pytest
 
 PACKAGE = Path('src', 'rosbots_description')
-ROOMS = ('sim/plugins/drive', 'sim/sensors', 'sim/physics/bullet', 'sim/description/inertia.py',
-         'gym/tasks')
+ROOMS = (
+    'sim/plugins/drive',
+    'sim/sensors',
+    'sim/physics/bullet',
+    'sim/description/inertia.py',
+    'gym/tasks',
+)
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
 # A test that takes as long hangs, which counts as noticed. The slowest takes 20 s of the processor.
 HOPELESS_CPU, HOPELESS_WALL = 120, 1800  # [s]
 # What tests import besides the product; all forks share it.
-OTHERS = ('pytest', '_pytest.assertion.rewrite', 'hypothesis', 'numpy', 'pybullet', 'lxml.etree',
-          'yaml', 'msgspec', 'gymnasium', 'rospy', 'collada', 'PIL.Image', 'rosgraph',
-          'sensor_msgs.msg', 'gazebo_msgs.srv', 'tf2_msgs.msg', 'pyarrow', 'viser', 'scipy.spatial')
+OTHERS = (
+    'pytest',
+    '_pytest.assertion.rewrite',
+    'hypothesis',
+    'numpy',
+    'pybullet',
+    'lxml.etree',
+    'yaml',
+    'msgspec',
+    'gymnasium',
+    'rospy',
+    'collada',
+    'PIL.Image',
+    'rosgraph',
+    'sensor_msgs.msg',
+    'gazebo_msgs.srv',
+    'tf2_msgs.msg',
+    'pyarrow',
+    'viser',
+    'scipy.spatial',
+)
 
 
 def tests_of(path: Path) -> list[list[str]]:
@@ -65,8 +88,11 @@ def tests_of(path: Path) -> list[list[str]]:
     named = [test for test in own if test.name == f'test_{path.name}']
     rest = [test for test in own if test not in named]
     others = [test for test in found if test not in own]
-    stages = [named, *([test for test in rest if test.parts[1] == level]
-                       for level in ('unit', 'engine')), others]
+    stages = [
+        named,
+        *([test for test in rest if test.parts[1] == level] for level in ('unit', 'engine')),
+        others,
+    ]
     return [list(map(str, stage)) for stage in stages]
 
 
@@ -81,11 +107,13 @@ class Report:
         """Limit the time of each test."""
         _limit_time()
 
-    def pytest_collection_modifyitems(self, config: pytest.Config,
-                                      items: list[pytest.Item]) -> None:
+    def pytest_collection_modifyitems(
+        self, config: pytest.Config, items: list[pytest.Item]
+    ) -> None:
         """Restore the order of the command line, which test/conftest.py changes."""
-        order = {Path(name.partition('::')[0]).resolve(): place
-                 for place, name in enumerate(config.args)}
+        order = {
+            Path(name.partition('::')[0]).resolve(): place for place, name in enumerate(config.args)
+        }
         items.sort(key=lambda item: order[item.path])
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -140,8 +168,7 @@ class Tests:
         return called in self._sound
 
 
-def _run(path: Path | None, changed: ast.Module | None,
-         arguments: list[str]) -> tuple[Report, str]:
+def _run(path: Path | None, changed: ast.Module | None, arguments: list[str]) -> tuple[Report, str]:
     """Run pytest in a fork, with another content of a file if given.
 
     Returns:
@@ -199,8 +226,11 @@ def _run_pytest(arguments: list[str]) -> Report:
 
     sys.dont_write_bytecode = True
     report = Report()
-    code = int(pytest.main(['-q', '-p', 'no:cacheprovider', '-p', 'no:xdist', *arguments],
-                           plugins=[report]))
+    code = int(
+        pytest.main(
+            ['-q', '-p', 'no:cacheprovider', '-p', 'no:xdist', *arguments], plugins=[report]
+        )
+    )
     if code > pytest.ExitCode.TESTS_FAILED and code != pytest.ExitCode.NO_TESTS_COLLECTED:
         report.failed.append(f'pytest: exit code {code}')
     return report
@@ -208,9 +238,15 @@ def _run_pytest(arguments: list[str]) -> Report:
 
 def files(rooms: list[str]) -> list[Path]:
     """Return the Python files of folders, or files, of the package."""
-    found = [path for room in rooms for path in (
-        [ROOT / PACKAGE / room] if room.endswith('.py')
-        else sorted((ROOT / PACKAGE / room).rglob('*.py')))]
+    found = [
+        path
+        for room in rooms
+        for path in (
+            [ROOT / PACKAGE / room]
+            if room.endswith('.py')
+            else sorted((ROOT / PACKAGE / room).rglob('*.py'))
+        )
+    ]
     return [path for path in found if path.name != '__init__.py' and path.is_file()]
 
 
@@ -224,8 +260,9 @@ class Mutant:
 
     def __str__(self) -> str:
         """Return file and line, before and after."""
-        return (f'{self.path.relative_to(ROOT / PACKAGE)}: '
-                + '  ->  '.join(changed_line(self.tree, self.number)))
+        return f'{self.path.relative_to(ROOT / PACKAGE)}: ' + '  ->  '.join(
+            changed_line(self.tree, self.number)
+        )
 
 
 def choose(arguments: argparse.Namespace) -> list[Mutant]:
@@ -235,8 +272,11 @@ def choose(arguments: argparse.Namespace) -> list[Mutant]:
     every = [Mutant(path, tree, number) for path, tree in trees.items() for number in kind(tree)]
     if arguments.again:
         survivors = arguments.again.read_text(encoding='utf-8').splitlines()
-        return [one for one in every if any(
-            line.startswith('survived') and line.endswith(str(one)) for line in survivors)]
+        return [
+            one
+            for one in every
+            if any(line.startswith('survived') and line.endswith(str(one)) for line in survivors)
+        ]
     print(f'{arguments.sample} of {len(every)} mutants, seed {arguments.seed}', flush=True)
     return random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
 
@@ -245,26 +285,40 @@ def _is_noticed(one: Mutant, stage: int, tests: Tests, verdicts: Counter[str]) -
     """Tell whether one stage of the tests of its file notices a mutant; print and count how."""
     start = time.monotonic()
     verdict, _, name = tests.notice(
-        one.path, mutant(one.tree, one.number), tests_of(one.path)[stage]).partition(' ')
+        one.path, mutant(one.tree, one.number), tests_of(one.path)[stage]
+    ).partition(' ')
     if verdict:
         verdicts[verdict] += 1
-        print(f'{verdict:8} {time.monotonic() - start:6.1f} s  {one}{name and "   by " + name}',
-              flush=True)
+        print(
+            f'{verdict:8} {time.monotonic() - start:6.1f} s  {one}{name and "   by " + name}',
+            flush=True,
+        )
     return bool(verdict)
 
 
 def main() -> int:
     """Make mutants; return 1 if the tests notice too few."""
-    parser = argparse.ArgumentParser(prog='./rosbots bench mutants', description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog='./rosbots bench mutants',
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument('--sample', type=int, default=SAMPLE, help='how many mutants')
     parser.add_argument('--seed', type=int, default=0)
-    parser.add_argument('--own', action='store_true',
-                        help="only by the tests of the file's own folder, in minutes")
-    parser.add_argument('--lines', action='store_true',
-                        help='leave out statements, instead of changing numbers and signs')
-    parser.add_argument('--again', type=Path, metavar='OUTPUT',
-                        help='only those that survived, by the saved output of an earlier run')
+    parser.add_argument(
+        '--own', action='store_true', help="only by the tests of the file's own folder, in minutes"
+    )
+    parser.add_argument(
+        '--lines',
+        action='store_true',
+        help='leave out statements, instead of changing numbers and signs',
+    )
+    parser.add_argument(
+        '--again',
+        type=Path,
+        metavar='OUTPUT',
+        help='only those that survived, by the saved output of an earlier run',
+    )
     parser.add_argument('folders', nargs='*', default=ROOMS, help='of the package')
     arguments = parser.parse_args()
     chosen = choose(arguments)
@@ -280,8 +334,10 @@ def main() -> int:
     for name in sorted(tests.broken):
         print(f'left out, since it fails without any change: {name}')
     noticed = len(chosen) - len(living)
-    print(f'{noticed} of {len(chosen)} noticed: a test failed for {verdicts["failed"]}, '
-          f'{verdicts["crashed"]} crashed, {verdicts["hung"]} hung')
+    print(
+        f'{noticed} of {len(chosen)} noticed: a test failed for {verdicts["failed"]}, '
+        f'{verdicts["crashed"]} crashed, {verdicts["hung"]} hung'
+    )
     return 0 if noticed >= WANTED * len(chosen) else 1
 
 

@@ -10,9 +10,19 @@ import ast
 import copy
 
 OPPOSITE: dict[type[ast.AST], type[ast.AST]] = {
-    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
-    ast.Lt: ast.GtE, ast.GtE: ast.Lt, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq,
-    ast.NotEq: ast.Eq, ast.And: ast.Or, ast.Or: ast.And}
+    ast.Add: ast.Sub,
+    ast.Sub: ast.Add,
+    ast.Mult: ast.Div,
+    ast.Div: ast.Mult,
+    ast.Lt: ast.GtE,
+    ast.GtE: ast.Lt,
+    ast.Gt: ast.LtE,
+    ast.LtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.And: ast.Or,
+    ast.Or: ast.And,
+}
 OTHER_NAME = {'min': 'max', 'max': 'min'}
 EQUIVALENT = ('strict', 'frozen', 'slots', 'maxsize')  # keyword arguments
 
@@ -39,19 +49,36 @@ def mutate(node: ast.AST) -> bool:
 
 def places(tree: ast.Module) -> list[int]:
     """Return the numbers of the nodes that can be changed."""
-    equivalent = {id(node.value) for node in ast.walk(tree)
-                  if isinstance(node, ast.keyword) and node.arg in EQUIVALENT}
-    return [number for number, node in enumerate(ast.walk(tree))
-            if id(node) not in equivalent and mutate(copy.copy(node))]
+    equivalent = {
+        id(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.keyword) and node.arg in EQUIVALENT
+    }
+    return [
+        number
+        for number, node in enumerate(ast.walk(tree))
+        if id(node) not in equivalent and mutate(copy.copy(node))
+    ]
 
 
 def statements(tree: ast.Module) -> list[int]:
     """Return the numbers of the statements that can be left out: no import, docstring or pass."""
-    return [number for number, node in enumerate(ast.walk(tree))
-            if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Raise | ast.Delete
-                          | ast.Continue | ast.Break)
-            or (isinstance(node, ast.AnnAssign) and node.value)
-            or (isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant))]
+    return [
+        number
+        for number, node in enumerate(ast.walk(tree))
+        if isinstance(
+            node,
+            ast.Assign
+            | ast.AugAssign
+            | ast.Return
+            | ast.Raise
+            | ast.Delete
+            | ast.Continue
+            | ast.Break,
+        )
+        or (isinstance(node, ast.AnnAssign) and node.value)
+        or (isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant))
+    ]
 
 
 def mutant(tree: ast.Module, number: int) -> ast.Module:
@@ -73,5 +100,8 @@ def changed_line(tree: ast.Module, number: int) -> tuple[str, str]:
     """Return the first line that differs in a mutant, before and after."""
     before = ast.unparse(tree).splitlines()
     after = ast.unparse(mutant(tree, number)).splitlines()
-    return next((one.strip(), other.strip()) for one, other in zip(before, after, strict=False)
-                if one != other)
+    return next(
+        (one.strip(), other.strip())
+        for one, other in zip(before, after, strict=False)
+        if one != other
+    )

@@ -99,8 +99,10 @@ def compare_grounds() -> str:
                     lay_box(world)
                 speeds[i] = forward_speed(driven(world))
                 best[i] = min(best[i], quickest_batch(world))
-    return (f'box of 100 m as ground: cost of a step x {best[1] / best[0]:.2f}, '
-            f'speed {speeds[1] / speeds[0] - 1.0:+.2%}')
+    return (
+        f'box of 100 m as ground: cost of a step x {best[1] / best[0]:.2f}, '
+        f'speed {speeds[1] / speeds[0] - 1.0:+.2%}'
+    )
 
 
 def main() -> int:

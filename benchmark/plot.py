@@ -27,8 +27,13 @@ def plot_speed(
         style = {'linestyle': '--', 'markerfacecolor': 'none'} if name == estimated else {}
         axes.plot(*zip(*points, strict=True), marker='o', label=name, **style)
     axes.axhline(1000.0, color='0.6', linestyle=':', label='real time')
-    axes.set(title='Steps of 1 ms per second of wall time', xlabel='robots driving',
-             ylabel='steps/s', xscale='log', yscale='log')
+    axes.set(
+        title='Steps of 1 ms per second of wall time',
+        xlabel='robots driving',
+        ylabel='steps/s',
+        xscale='log',
+        yscale='log',
+    )
     robots = sorted({number for points in curves.values() for number, _ in points})
     axes.set_xticks(robots, [str(number) for number in robots])
     axes.minorticks_off()

@@ -92,8 +92,9 @@ def learnt_by_cma(_seed: int) -> Policy:
     """Return the policy that scripts/learn_by_cma.py has learnt."""
     node = runpy.run_path(str(ROOT / 'scripts' / 'follow_policy.py'))
     layers = json.loads((ROOT / 'config' / 'go_to_goal_policy.json').read_text('utf-8'))['layers']
-    return lambda seen: np.asarray(node['outputs'](
-        layers, node['inputs'](seen['laser'], *seen['goal'])), np.float32)
+    return lambda seen: np.asarray(
+        node['outputs'](layers, node['inputs'](seen['laser'], *seen['goal'])), np.float32
+    )
 
 
 def _room(laser: NDArray[Any]) -> float:

@@ -19,8 +19,10 @@ PER_SECOND = 500  # messages per robot and simulated second: odom, joint_states,
 
 def robot_topics(robots: int) -> list[str]:
     """Return the topics on which robots publish their motion."""
-    return ['/tf', *(f'/robot{i}/{topic}' for i in range(robots)
-                     for topic in ('odom', 'joint_states'))]
+    return [
+        '/tf',
+        *(f'/robot{i}/{topic}' for i in range(robots) for topic in ('odom', 'joint_states')),
+    ]
 
 
 class Reader(Child):

@@ -41,8 +41,15 @@ CALL_RATE, CALL_SECONDS = 200.0, 10.0  # [Hz], [s, wall] of service calls
 CALLS = 50  # of each service
 SLOWEST = 5  # services to print
 # Services that would change the world of later measurements.
-NOT_CALLED = {'spawn_urdf_model', 'spawn_sdf_model', 'set_physics_properties', 'pause_physics',
-              'reset_world', 'reset_simulation', 'step'}
+NOT_CALLED = {
+    'spawn_urdf_model',
+    'spawn_sdf_model',
+    'set_physics_properties',
+    'pause_physics',
+    'reset_world',
+    'reset_simulation',
+    'step',
+}
 WHEEL = 'robot0::wheel_left_link'
 
 
@@ -61,9 +68,11 @@ def measure_cost(frequency: int, slowdown: float) -> tuple[float, float]:
             server.wait_simulated(2.0)
             used, factor = _least_share(server)
             scaled = share * slowdown
-            print(f'/clock {frequency:4} Hz, robots driving {robots}: {used:5.1f} % of a core, '
-                  f'Gazebo {share:g} %, scaled to this machine {scaled:.1f} %: '
-                  f'ratio {used / scaled:.2f}; real-time factor {factor:.4f}')
+            print(
+                f'/clock {frequency:4} Hz, robots driving {robots}: {used:5.1f} % of a core, '
+                f'Gazebo {share:g} %, scaled to this machine {scaled:.1f} %: '
+                f'ratio {used / scaled:.2f}; real-time factor {factor:.4f}'
+            )
         print(f'memory with 1 robot: {server.memory():.0f} MB (Gazebo {GAZEBO_MEMORY[1]:.0f})')
         return _start(server)
 
@@ -88,8 +97,10 @@ def measure_answers() -> tuple[float, float]:
     with Server() as server:
         print(f'first spawn of the robot, crash sandbox included: {1000 * server.spawn():.1f} ms')
         print_times('spawn of the robot', [server.spawn() for _ in range(SPAWNS)], '100 ms')
-        print(f'memory with {SPAWNS + 1} robots: {server.memory():.0f} MB '
-              f'(Gazebo with 20: {GAZEBO_MEMORY[20]:.0f})')
+        print(
+            f'memory with {SPAWNS + 1} robots: {server.memory():.0f} MB '
+            f'(Gazebo with 20: {GAZEBO_MEMORY[20]:.0f})'
+        )
         _print_services()
         return _start(server)
 
@@ -123,8 +134,10 @@ def measure_trials() -> None:
 
 def print_times(what: str, times: list[float], aim: str) -> None:
     """Print the median and the maximum of durations [s]."""
-    print(f'{what}: median {1000 * statistics.median(times):.1f} ms, '
-          f'maximum of {len(times)} {1000 * max(times):.1f} ms (target {aim})')
+    print(
+        f'{what}: median {1000 * statistics.median(times):.1f} ms, '
+        f'maximum of {len(times)} {1000 * max(times):.1f} ms (target {aim})'
+    )
 
 
 def _print_services() -> None:
@@ -157,12 +170,17 @@ def measure_promptness() -> None:
         rate = _call_services()
         end, after = server.simulated(), _processor_time()
     record = recorded.read()
-    print_times('command to wheel', [_target_after(one, record) - one for one in sent],
-                'one period of 10 ms + 3 ms')
+    print_times(
+        'command to wheel',
+        [_target_after(one, record) - one for one in sent],
+        'one period of 10 ms + 3 ms',
+    )
     late = report(record.steps[round(begin / STEP) : round(end / STEP)])
-    print(f'lateness of steps in the best 2 s, at {rate:.0f} calls/s: '
-          + ', '.join(f'{share} {1000 * seconds:.2f} ms' for share, seconds in late.items())
-          + ' (target: p99 below 2 ms)')
+    print(
+        f'lateness of steps in the best 2 s, at {rate:.0f} calls/s: '
+        + ', '.join(f'{share} {1000 * seconds:.2f} ms' for share, seconds in late.items())
+        + ' (target: p99 below 2 ms)'
+    )
     stolen, passed = (now - then for now, then in zip(after, before, strict=True))
     print(f'steal time of this virtual machine meanwhile: {stolen / passed:.1%}')
 
@@ -214,9 +232,11 @@ def slowdown() -> float:
 def _print_start(of_what: str, starts: list[tuple[float, float]], slower: float) -> None:
     """Print the time from roslaunch to the spawn service."""
     up, began = min(starts)
-    print(f'spawn service up {up:.2f} s after roslaunch, of which {began:.2f} s to start '
-          f'{of_what}; scaled to the machine of Gazebo {up / slower:.2f} s '
-          '(target 1.1 s; Gazebo 0.9 to 1.5 s)')
+    print(
+        f'spawn service up {up:.2f} s after roslaunch, of which {began:.2f} s to start '
+        f'{of_what}; scaled to the machine of Gazebo {up / slower:.2f} s '
+        '(target 1.1 s; Gazebo 0.9 to 1.5 s)'
+    )
 
 
 def main() -> int:

@@ -21,8 +21,10 @@ import numpy as np
 from policies import POLICIES
 
 EPISODES = 20
-HEADER = '| Task | Policy | Return | Its standard deviation | Steps | Success |\n' \
+HEADER = (
+    '| Task | Policy | Return | Its standard deviation | Steps | Success |\n'
     '| --- | --- | --- | --- | --- | --- |'
+)
 
 
 class Episode(NamedTuple):
@@ -56,8 +58,10 @@ def row(task: str, policy: str, results: Sequence[Episode]) -> str:
     returns = np.array([one.total for one in results])
     reached = [one.success for one in results if one.success is not None]
     success = f'{np.mean(reached):.0%}' if reached else '-'
-    return f'| {task} | {policy} | {returns.mean():.2f} | {returns.std():.2f} ' \
+    return (
+        f'| {task} | {policy} | {returns.mean():.2f} | {returns.std():.2f} '
         f'| {np.mean([one.steps for one in results]):.0f} | {success} |'
+    )
 
 
 def main() -> int:
@@ -66,8 +70,9 @@ def main() -> int:
     tasks = [one for one in sys.argv[1:] if not one.isdecimal()] or [*POLICIES]
     unknown = [task for task in tasks if task not in POLICIES]
     if unknown or len(numbers) > 1 or 0 in numbers:
-        print(f'arguments are a number of episodes, and tasks: {", ".join(POLICIES)}',
-              file=sys.stderr)
+        print(
+            f'arguments are a number of episodes, and tasks: {", ".join(POLICIES)}', file=sys.stderr
+        )
         return 2
     episodes = numbers[0] if numbers else EPISODES
     print(f'{episodes} episodes of each policy\n\n{HEADER}')
@@ -75,7 +80,8 @@ def main() -> int:
         for task in tasks:
             for policy in POLICIES[task]:
                 results = pool.starmap(
-                    episode, [(task, policy, seed) for seed in range(episodes)], chunksize=1)
+                    episode, [(task, policy, seed) for seed in range(episodes)], chunksize=1
+                )
                 print(row(task, policy, results))
     return 0
 

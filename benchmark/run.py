@@ -25,11 +25,26 @@ from rosbots_description.cli.launched import descendants, send_signal
 
 FOLDER = Path(__file__).resolve().parent
 # Duration on two idle processors [s, wall].
-PARTS = {'fidelity': 45.0, 'physics': 330.0, 'veer': 260.0, 'speed': 560.0, 'real_time': 140.0,
-         'sensors': 235.0, 'arm': 60.0, 'gym': 180.0, 'web': 130.0,
-         'classroom': 60.0}
-LONG = {'batch': 240.0, 'returns': 720.0, 'mechanics': 600.0, 'soak': 1530.0, 'mutants': 9000.0,
-        'fuzz': 1800.0}  # only by name
+PARTS = {
+    'fidelity': 45.0,
+    'physics': 330.0,
+    'veer': 260.0,
+    'speed': 560.0,
+    'real_time': 140.0,
+    'sensors': 235.0,
+    'arm': 60.0,
+    'gym': 180.0,
+    'web': 130.0,
+    'classroom': 60.0,
+}
+LONG = {
+    'batch': 240.0,
+    'returns': 720.0,
+    'mechanics': 600.0,
+    'soak': 1530.0,
+    'mutants': 9000.0,
+    'fuzz': 1800.0,
+}  # only by name
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
 GRACE = 2.0  # [s, wall] for processes to end after a signal
 _BECOME_SUBREAPER = 36  # of prctl: orphaned descendants become our children
@@ -104,9 +119,13 @@ def run(command: Sequence[str | Path], name: str, about: float) -> int:
     with tempfile.TemporaryDirectory(prefix='rosbots_bench_', ignore_cleanup_errors=True) as folder:
         try:
             part = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
                 env=os.environ | {'TMPDIR': folder, 'PYTHONUNBUFFERED': '1'},
-                start_new_session=True)  # Ctrl-C reaches this process only, which ends the part
+                start_new_session=True,
+            )  # Ctrl-C reaches this process only, which ends the part
             assert part.stdout is not None
             with part.stdout:
                 _pass_on(part, part.stdout, Progress(name, about, sys.stderr))
@@ -115,9 +134,7 @@ def run(command: Sequence[str | Path], name: str, about: float) -> int:
             end_all()
 
 
-def _pass_on(
-    part: subprocess.Popen[bytes], output: IO[bytes], progress: Progress
-) -> None:
+def _pass_on(part: subprocess.Popen[bytes], output: IO[bytes], progress: Progress) -> None:
     """Forward the part's output until it is closed, and show progress in between."""
     with selectors.DefaultSelector() as selector:
         selector.register(output, selectors.EVENT_READ)

@@ -58,7 +58,8 @@ def best(server: Server, *topics: str, rate: float = RATE) -> tuple[float, float
         reader = stack.enter_context(Reader(*topics)) if topics else None
         server.wait_simulated(1.0)
         costs, speeds, arrived = zip(
-            *(window(server, reader, rate) for _ in range(ROUNDS)), strict=True)
+            *(window(server, reader, rate) for _ in range(ROUNDS)), strict=True
+        )
     return min(costs), max(speeds), max(arrived)
 
 
@@ -77,17 +78,23 @@ def measure_laser(slower: float) -> None:
         for case, cost in costs.items():
             print(f'laser, {case:13}: {cost:6.1f} ms per simulated second, Gazebo {GAZEBO[case]}')
         added = costs['subscribed'] - costs['no subscriber']
-        print(f'a subscriber adds {added:.1f} ms/s, scaled {added / slower:.1f} '
-              f'(target {MOST_ADDED:g}: {_verdict(added <= MOST_ADDED * slower)}; Gazebo 40-55); '
-              f'{arrived:.0%} of the scans received')
+        print(
+            f'a subscriber adds {added:.1f} ms/s, scaled {added / slower:.1f} '
+            f'(target {MOST_ADDED:g}: {_verdict(added <= MOST_ADDED * slower)}; Gazebo 40-55); '
+            f'{arrived:.0%} of the scans received'
+        )
         server.unthrottle()
         idle, (_, speed, arrived) = best(server)[1], best(server, '/scan')
-        print(f'unthrottled, no subscriber: real-time factor {idle:.1f}, '
-              f'Gazebo {GAZEBO_SPEED["no subscriber"]}')
-        print(f'unthrottled, subscribed: real-time factor {speed:.1f}, scaled {speed * slower:.1f} '
-              f'(target {LEAST_SPEED:g}: '
-              f'{_verdict(speed * slower >= LEAST_SPEED)}; Gazebo {GAZEBO_SPEED["subscribed"]}); '
-              f'{arrived:.0%} of the scans received (Gazebo 80-93 %)')
+        print(
+            f'unthrottled, no subscriber: real-time factor {idle:.1f}, '
+            f'Gazebo {GAZEBO_SPEED["no subscriber"]}'
+        )
+        print(
+            f'unthrottled, subscribed: real-time factor {speed:.1f}, scaled {speed * slower:.1f} '
+            f'(target {LEAST_SPEED:g}: '
+            f'{_verdict(speed * slower >= LEAST_SPEED)}; Gazebo {GAZEBO_SPEED["subscribed"]}); '
+            f'{arrived:.0%} of the scans received (Gazebo 80-93 %)'
+        )
 
 
 def measure_crowd(slower: float) -> None:
@@ -101,9 +108,11 @@ def measure_crowd(slower: float) -> None:
         server.spawn_urdf('crowd', static_shapes(draw, SHAPES))
         server.spawn_urdf('bot', ROBOT.read_text(encoding='utf-8'))
         added = -best(server)[0] + best(server, '/scan')[0]
-        print(f'laser among {SHAPES} static shapes: a subscriber adds {added:.1f} ms/s, scaled '
-              f'{added / slower:.1f} (target {MOST_ADDED:g}: '
-              f'{_verdict(added <= MOST_ADDED * slower)})')
+        print(
+            f'laser among {SHAPES} static shapes: a subscriber adds {added:.1f} ms/s, scaled '
+            f'{added / slower:.1f} (target {MOST_ADDED:g}: '
+            f'{_verdict(added <= MOST_ADDED * slower)})'
+        )
 
 
 def static_shapes(draw: Random, count: int) -> str:
@@ -111,14 +120,21 @@ def static_shapes(draw: Random, count: int) -> str:
     text = ''
     for number in range(count):
         way, distance = draw.uniform(-math.pi, math.pi), draw.uniform(1.5, 15.0)
-        shape = ('<box size=".3 .4 1"/>', '<cylinder radius=".2" length="1"/>',
-                 '<sphere radius=".3"/>')[number % 3]
+        shape = (
+            '<box size=".3 .4 1"/>',
+            '<cylinder radius=".2" length="1"/>',
+            '<sphere radius=".3"/>',
+        )[number % 3]
         x, y, yaw = distance * math.cos(way), distance * math.sin(way), draw.uniform(0.0, 3.0)
-        text += (f'<collision><origin xyz="{x} {y} .5" rpy="0 0 {yaw}"/><geometry>{shape}'
-                 '</geometry></collision>')
-    return (f'<robot name="crowd"><link name="link"><inertial><mass value="1"/><inertia ixx="1" '
-            f'ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>{text}</link>'
-            '<gazebo><static>true</static></gazebo></robot>')
+        text += (
+            f'<collision><origin xyz="{x} {y} .5" rpy="0 0 {yaw}"/><geometry>{shape}'
+            '</geometry></collision>'
+        )
+    return (
+        f'<robot name="crowd"><link name="link"><inertial><mass value="1"/><inertia ixx="1" '
+        f'ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>{text}</link>'
+        '<gazebo><static>true</static></gazebo></robot>'
+    )
 
 
 def measure_robots(slower: float) -> None:
@@ -127,22 +143,29 @@ def measure_robots(slower: float) -> None:
     Args:
         slower: as in `measure_laser`.
     """
-    text = (ROBOT.parent / 'skid4_laser.urdf').read_text(encoding='utf-8').replace(
-        '<samples>720<', '<samples>360<').replace('<update_rate>40<', '<update_rate>10<')
+    text = (
+        (ROBOT.parent / 'skid4_laser.urdf')
+        .read_text(encoding='utf-8')
+        .replace('<samples>720<', '<samples>360<')
+        .replace('<update_rate>40<', '<update_rate>10<')
+    )
     topics = [f'/scan{number}' for number in range(ROBOTS)]
     with Server(f'world_name:={RECORDED / "worlds" / "scene_a.world"}') as server:
         for number, topic in enumerate(topics):
-            server.spawn_urdf(f'bot{number}', text.replace('>/scan<', f'>{topic}<'),
-                              x=-1.5 * number - 1.0)
+            server.spawn_urdf(
+                f'bot{number}', text.replace('>/scan<', f'>{topic}<'), x=-1.5 * number - 1.0
+            )
         drive = rospy.Publisher('/cmd_vel', Twist, queue_size=1)
         wait_until(drive.get_num_connections, 'a robot')
         drive.publish(Twist(linear=Vector3(0.2, 0.0, 0.0), angular=Vector3(0.0, 0.0, 0.5)))
         cost, speed, arrived = best(server, *topics, rate=10.0 * ROBOTS)
         added = cost - best(server)[0]
-        print(f'{ROBOTS} driving robots with 360 rays at 10 Hz: subscribers add {added:.1f} ms/s, '
-              f'scaled {added / slower:.1f}, to a total of {cost:.0f}; real-time factor '
-              f'{speed:.3f} (target 1: {_verdict(speed > 0.99)}); {arrived:.0%} of the scans '
-              'received')
+        print(
+            f'{ROBOTS} driving robots with 360 rays at 10 Hz: subscribers add {added:.1f} ms/s, '
+            f'scaled {added / slower:.1f}, to a total of {cost:.0f}; real-time factor '
+            f'{speed:.3f} (target 1: {_verdict(speed > 0.99)}); {arrived:.0%} of the scans '
+            'received'
+        )
 
 
 def measure_camera(robot: str, size: str, slower: float) -> None:
@@ -162,14 +185,18 @@ def measure_camera(robot: str, size: str, slower: float) -> None:
         idle = best(server)[0]
         cost, speed, arrived = best(server, '/camera1/image_raw', rate=CAMERA_RATE)
         added = cost - idle
-        print(f'camera {size}: a subscriber adds {added:.0f} ms of processor time per simulated '
-              f'second, scaled {added / slower:.0f} (target for 320x240: '
-              f'{MOST_OF_CAMERA:g}; Gazebo 1270-1350), real-time factor {speed:.3f}; '
-              f'{arrived:.0%} of the images received (Gazebo 58-96 %)')
+        print(
+            f'camera {size}: a subscriber adds {added:.0f} ms of processor time per simulated '
+            f'second, scaled {added / slower:.0f} (target for 320x240: '
+            f'{MOST_OF_CAMERA:g}; Gazebo 1270-1350), real-time factor {speed:.3f}; '
+            f'{arrived:.0%} of the images received (Gazebo 58-96 %)'
+        )
         server.unthrottle()
         _, speed, arrived = best(server, '/camera1/image_raw', rate=CAMERA_RATE)
-        print(f'camera {size}, unthrottled: real-time factor {speed:.1f}, {arrived:.0%} of '
-              'the images received (Gazebo 15-21, 3-5 %)')
+        print(
+            f'camera {size}, unthrottled: real-time factor {speed:.1f}, {arrived:.0%} of '
+            'the images received (Gazebo 15-21, 3-5 %)'
+        )
 
 
 def _verdict(met: bool) -> str:

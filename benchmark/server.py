@@ -178,8 +178,11 @@ class Server:
     def cpu_seconds(self) -> float:
         """Return the processor time of the server and its children so far [s]."""
         children = Path(f'/proc/{self.process}/task/{self.process}/children').read_text('ascii')
-        return sum(self._in_seconds(field, process) for field in (USER_TIME, SYSTEM_TIME)
-                   for process in (self.process, *map(int, children.split())))
+        return sum(
+            self._in_seconds(field, process)
+            for field in (USER_TIME, SYSTEM_TIME)
+            for process in (self.process, *map(int, children.split()))
+        )
 
     def _in_seconds(self, field: int, process: int = 0) -> float:
         """Return a time [s] from /proc/PID/stat; fields count from the one after the name."""

@@ -110,8 +110,10 @@ class Usage:
     threads: int
 
     def __str__(self) -> str:
-        return (f'{self.memory:.1f} MB, {self.files} files including {self.sockets} sockets, '
-                f'{self.threads} threads')
+        return (
+            f'{self.memory:.1f} MB, {self.files} files including {self.sockets} sockets, '
+            f'{self.threads} threads'
+        )
 
 
 def usage(server: Server) -> Usage:
@@ -130,8 +132,9 @@ class Drivers:
 
     def __init__(self, seed: int) -> None:
         self._random = random.Random(seed)
-        self._publishers = [rospy.Publisher(f'/robot{i}/cmd_vel', Twist, queue_size=1)
-                            for i in range(ROBOTS)]
+        self._publishers = [
+            rospy.Publisher(f'/robot{i}/cmd_vel', Twist, queue_size=1) for i in range(ROBOTS)
+        ]
         self._over = threading.Event()
         threading.Thread(target=self._drive, daemon=True).start()
 
@@ -158,8 +161,9 @@ class Clients:
         self._processes = []
         for number, work in enumerate([*[serve] * CLIENTS, kill_clients]):
             ours, theirs = context.Pipe(duplex=False)
-            process = context.Process(target=work, args=(
-                number, seed + number, robots, self._over, theirs))
+            process = context.Process(
+                target=work, args=(number, seed + number, robots, self._over, theirs)
+            )
             process.start()
             theirs.close()
             self._pipes.append(ours)
@@ -293,8 +297,10 @@ class Held:
     files: int  # in the folder for temporary files
 
     def __str__(self) -> str:
-        return (f'{self.memory:.1f} MB, {self.descriptors} descriptors, {self.threads} threads, '
-                f'{self.processes} processes, {self.files} temporary files')
+        return (
+            f'{self.memory:.1f} MB, {self.descriptors} descriptors, {self.threads} threads, '
+            f'{self.processes} processes, {self.files} temporary files'
+        )
 
 
 def held(process: int, folder: Path) -> Held:
@@ -362,16 +368,20 @@ def _spawned(server: Server, window: Window, folder: Path, count: int, seed: int
         print(f'{name:7} before       {before[name]}')
         print(f'{name:7} after {count:4}   {after}')
         kinds = (*COUNTS, *(('memory',) if count >= SETTLED_MEMORY else ()))
-        yield from (f'{name}: {fault}' for fault in grown(
-            before[name], after, kinds, POOL if name == 'gzweb' else 0))
+        yield from (
+            f'{name}: {fault}'
+            for fault in grown(before[name], after, kinds, POOL if name == 'gzweb' else 0)
+        )
 
 
 def spawn_and_delete(server: Server) -> None:
     """Spawn the robot, read its picture and its scan, and delete it."""
     server.spawn_urdf('eyes', EYES)
     got: set[str] = set()
-    readers = [rospy.Subscriber('/eye/image_raw', Image, lambda _: got.add('picture')),
-               rospy.Subscriber('/scan', LaserScan, lambda _: got.add('scan'))]
+    readers = [
+        rospy.Subscriber('/eye/image_raw', Image, lambda _: got.add('picture')),
+        rospy.Subscriber('/scan', LaserScan, lambda _: got.add('scan')),
+    ]
     wait_until(lambda: len(got) == len(readers), 'a picture and a scan')
     for reader in readers:
         reader.unregister()
@@ -391,8 +401,11 @@ def main() -> int:
     """Run the soak test with its own ROS master; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition('\n\n')[0])
     parser.add_argument(
-        '--seconds', type=float, default=600.0,
-        help='duration of the first part [s, wall]; the second one has half as many spawns')
+        '--seconds',
+        type=float,
+        default=600.0,
+        help='duration of the first part [s, wall]; the second one has half as many spawns',
+    )
     parser.add_argument('--seed', type=int, default=1, help='of all random choices')
     arguments = parser.parse_args()
     with Server() as server:
@@ -404,8 +417,7 @@ def main() -> int:
     faults.update(complaints(OUTPUT / 'server.log'))
     for fault, count in faults.most_common():
         print(f'UNEXPECTED ({count} x)  {fault}')
-    print(f'{sum(faults.values())} faults in {arguments.seconds:g} s and '
-          f'{spawns} spawns')
+    print(f'{sum(faults.values())} faults in {arguments.seconds:g} s and {spawns} spawns')
     return 1 if faults else 0
 
 

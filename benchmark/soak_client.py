@@ -45,8 +45,12 @@ PENDULUM = """<sdf version="1.6"><model name="pendulum">
   <joint name="hinge" type="revolute"><parent>foot</parent><child>bob</child>
     <axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"""
 BROKEN = '<robot name="broken"><link name="body"><inertial/></link></robot>'
-TOPICS = {'/clock': Clock, '/gazebo/model_states': ModelStates, '/gazebo/link_states': LinkStates,
-          '/robot0/odom': Odometry}
+TOPICS = {
+    '/clock': Clock,
+    '/gazebo/model_states': ModelStates,
+    '/gazebo/link_states': LinkStates,
+    '/robot0/odom': Odometry,
+}
 
 
 @dataclass
@@ -79,11 +83,24 @@ class Client:
         self._state_topic = rospy.Publisher('/gazebo/set_model_state', ModelState, queue_size=1)
         # Relative frequencies.
         self._actions: dict[Callable[[], None], int] = {
-            self.spawn: 12, self.delete: 10, self.spawn_again: 2, self.spawn_broken: 2,
-            self.delete_nobody: 2, self.reset_world: 1, self.reset_simulation: 1, self.pause: 2,
-            self.teleport: 10, self.teleport_by_topic: 5, self.move_link: 4, self.push: 8,
-            self.push_joint: 4, self.set_joint: 3, self.set_mass: 2, self.set_physics: 2,
-            self.query: 10, self.read_a_topic: 3,
+            self.spawn: 12,
+            self.delete: 10,
+            self.spawn_again: 2,
+            self.spawn_broken: 2,
+            self.delete_nobody: 2,
+            self.reset_world: 1,
+            self.reset_simulation: 1,
+            self.pause: 2,
+            self.teleport: 10,
+            self.teleport_by_topic: 5,
+            self.move_link: 4,
+            self.push: 8,
+            self.push_joint: 4,
+            self.set_joint: 3,
+            self.set_mass: 2,
+            self.set_physics: 2,
+            self.query: 10,
+            self.read_a_topic: 3,
         }
         if cleans_up:
             self._actions[self.delete_leftovers] = 20
@@ -134,8 +151,9 @@ class Client:
 
     def spawn_again(self) -> None:
         """Spawn a model under a name that exists."""
-        answer = self._call('spawn_urdf_model', srv.SpawnModel, self._robots[0], BOX, '', Pose(),
-                            'world')
+        answer = self._call(
+            'spawn_urdf_model', srv.SpawnModel, self._robots[0], BOX, '', Pose(), 'world'
+        )
         self._expect(answer, False, 'entity already exists')
 
     def spawn_broken(self) -> None:
@@ -173,16 +191,24 @@ class Client:
 
     def move_link(self) -> None:
         """Set the pose of a robot by that of a link."""
-        state = LinkState(f'{self._a_robot()}::base_footprint', self._random_pose(), Twist(),
-                          'world')
+        state = LinkState(
+            f'{self._a_robot()}::base_footprint', self._random_pose(), Twist(), 'world'
+        )
         self._expect(self._call('set_link_state', srv.SetLinkState, state), True, 'success')
 
     def push(self) -> None:
         """Apply a wrench to a robot."""
         wrench = Wrench(Vector3(self._random.uniform(-2.0, 2.0), 0.0, 0.0), Vector3())
         answer = self._call(
-            'apply_body_wrench', srv.ApplyBodyWrench, f'{self._a_robot()}::base_footprint', '',
-            Point(), wrench, rospy.Time(), rospy.Duration(self._random.uniform(0.0, 0.5)))
+            'apply_body_wrench',
+            srv.ApplyBodyWrench,
+            f'{self._a_robot()}::base_footprint',
+            '',
+            Point(),
+            wrench,
+            rospy.Time(),
+            rospy.Duration(self._random.uniform(0.0, 0.5)),
+        )
         self._expect(answer, True, '')
         if self._random.random() < 0.3:
             self._call('clear_body_wrenches', srv.BodyRequest, f'{self._a_robot()}::base_footprint')
@@ -190,8 +216,13 @@ class Client:
     def push_joint(self) -> None:
         """Apply an effort to a wheel joint."""
         answer = self._call(
-            'apply_joint_effort', srv.ApplyJointEffort, f'{self._a_robot()}::wheel_left_joint',
-            self._random.uniform(-1.0, 1.0), rospy.Time(), rospy.Duration(0.2))
+            'apply_joint_effort',
+            srv.ApplyJointEffort,
+            f'{self._a_robot()}::wheel_left_joint',
+            self._random.uniform(-1.0, 1.0),
+            rospy.Time(),
+            rospy.Duration(0.2),
+        )
         self._expect(answer, True, 'effort set')
 
     def set_joint(self) -> None:
@@ -207,8 +238,19 @@ class Client:
         now = self._call('get_link_properties', srv.GetLinkProperties, link)
         self._expect(now, True, 'got properties')
         answer = self._call(
-            'set_link_properties', srv.SetLinkProperties, link, now.com, True,
-            self._random.uniform(0.9, 1.1), now.ixx, now.ixy, now.ixz, now.iyy, now.iyz, now.izz)
+            'set_link_properties',
+            srv.SetLinkProperties,
+            link,
+            now.com,
+            True,
+            self._random.uniform(0.9, 1.1),
+            now.ixx,
+            now.ixy,
+            now.ixz,
+            now.iyy,
+            now.iyz,
+            now.izz,
+        )
         self._expect(answer, True, 'properties set')
 
     def set_physics(self) -> None:
@@ -216,9 +258,13 @@ class Client:
         now = self._call('get_physics_properties', srv.GetPhysicsProperties)
         now.ode_config.sor_pgs_iters = self._random.randint(30, 70)
         answer = self._call(
-            'set_physics_properties', srv.SetPhysicsProperties,
-            self._random.choice((0.001, 0.001, 0.002)), 1000.0,
-            Vector3(0.0, 0.0, self._random.uniform(-10.0, -9.0)), now.ode_config)
+            'set_physics_properties',
+            srv.SetPhysicsProperties,
+            self._random.choice((0.001, 0.001, 0.002)),
+            1000.0,
+            Vector3(0.0, 0.0, self._random.uniform(-10.0, -9.0)),
+            now.ode_config,
+        )
         self._expect(answer, True, 'physics engine updated')
 
     def query(self) -> None:
@@ -260,9 +306,7 @@ class Client:
         return ModelState(self._a_robot(), self._random_pose(), Twist(), 'world')
 
 
-def serve(
-    number: int, seed: int, robots: list[str], over: Event, reports: Connection
-) -> None:
+def serve(number: int, seed: int, robots: list[str], over: Event, reports: Connection) -> None:
     """Run a client until `over` is set; the entry point of its process."""
     name = f'client{number}'
     _begin(name)
@@ -299,7 +343,8 @@ def _run_victim(number: int, robots: list[str]) -> None:
         rospy.Subscriber(name, message_class, lambda _: None)
     client = Client(number, robots, f'{VICTIM}{number}')  # its models remain
     actions = itertools.cycle(
-        (client.spawn, client.teleport, client.teleport_by_topic, client.push))
+        (client.spawn, client.teleport, client.teleport_by_topic, client.push)
+    )
     while True:
         with contextlib.suppress(ValueError):  # its models may have been deleted by another client
             next(actions)()

@@ -33,8 +33,11 @@ def look(address: str) -> None:
     """Look at all sensors for a moment."""
     with _browser(address) as browser:
         browser.read(0.3)
-        boxes = [uuid for uuid, (kind, props) in browser.controls.items()
-                 if kind == 'GuiCheckboxMessage' and str(props['label']).startswith('/')]
+        boxes = [
+            uuid
+            for uuid, (kind, props) in browser.controls.items()
+            if kind == 'GuiCheckboxMessage' and str(props['label']).startswith('/')
+        ]
         for box in boxes:
             browser.send({'type': 'GuiUpdateMessage', 'uuid': box, 'updates': {'value': True}})
         browser.read(0.5)
@@ -49,11 +52,26 @@ def upload_half(address: str) -> None:
     """Begin a large file, and go."""
     with _browser(address) as browser:
         button = browser.control(UPLOAD)
-        browser.send({'type': 'FileTransferStartUpload', 'source_component_uuid': button,
-                      'transfer_uuid': 'half', 'filename': 'half', 'mime_type': '',
-                      'part_count': 20, 'size_bytes': 9_000_000})
-        browser.send({'type': 'FileTransferPart', 'source_component_uuid': button,
-                      'transfer_uuid': 'half', 'part_index': 0, 'content': 500_000 * b'x'})
+        browser.send(
+            {
+                'type': 'FileTransferStartUpload',
+                'source_component_uuid': button,
+                'transfer_uuid': 'half',
+                'filename': 'half',
+                'mime_type': '',
+                'part_count': 20,
+                'size_bytes': 9_000_000,
+            }
+        )
+        browser.send(
+            {
+                'type': 'FileTransferPart',
+                'source_component_uuid': button,
+                'transfer_uuid': 'half',
+                'part_index': 0,
+                'content': 500_000 * b'x',
+            }
+        )
 
 
 def send_nonsense(address: str) -> None:
@@ -71,8 +89,7 @@ def knock(address: str) -> None:
         stranger.sendall(b'GET / HTTP/1.1\r\nUpgrade: websocket\r\n')
 
 
-VISITS: tuple[Callable[[str], None], ...] = (
-    look, leave_at_once, upload_half, send_nonsense, knock)
+VISITS: tuple[Callable[[str], None], ...] = (look, leave_at_once, upload_half, send_nonsense, knock)
 
 
 def _browser(address: str) -> Browser:

@@ -134,8 +134,10 @@ def _speed_read(server: Server, robots: int) -> tuple[float, float]:
 
 def table(measured: Sequence[Case]) -> str:
     """Return the measured cases as a table."""
-    rows = ['robots        bare  engine   world  server    read  Gazebo  server/bare  '
-            'server/Gazebo        read/Gazebo received']
+    rows = [
+        'robots        bare  engine   world  server    read  Gazebo  server/bare  '
+        'server/Gazebo        read/Gazebo received'
+    ]
     for case in measured:
         speeds = [*(case.best.get(column) for column in COLUMNS), case.gazebo]
         row = f'{case.name:10}'
@@ -146,8 +148,10 @@ def table(measured: Sequence[Case]) -> str:
         row += f'{case.received:9.0%}' if case.robots else ''
         rows.append(row)
     first = _first_standing([case for case in measured if case.driving])
-    rows.append('Gazebo: not measured here but estimated, from its speed relative to the bare loop '
-                f'on another machine; from {first} robots on, measured with standing robots')
+    rows.append(
+        'Gazebo: not measured here but estimated, from its speed relative to the bare loop '
+        f'on another machine; from {first} robots on, measured with standing robots'
+    )
     rows += [_real_time(case) for case in measured if case.robots in GAZEBO_BARE]
     return '\n'.join(rows)
 
@@ -156,8 +160,10 @@ def _real_time(case: Case) -> str:
     """Return the real-time factor with subscribers, here and scaled to the machine of Gazebo."""
     here = case.best['read'] / STEPS_PER_SECOND
     there = here * GAZEBO_BARE[case.robots] / case.best['bare']
-    return (f'{case.name} with subscribers: real-time factor {here:.2f} here (target 1), '
-            f'{there:.2f} scaled to the machine of Gazebo by the bare loop')
+    return (
+        f'{case.name} with subscribers: real-time factor {here:.2f} here (target 1), '
+        f'{there:.2f} scaled to the machine of Gazebo by the bare loop'
+    )
 
 
 def _vs_gazebo(case: Case, column: str, target: float | None) -> str:
@@ -181,8 +187,10 @@ def draw(measured: Sequence[Case], path: Path) -> None:
     curves = {
         name: [(case.robots, case.best[column]) for case in shown] for column, name in names.items()
     }
-    gazebo = ('Gazebo, no subscriber: estimated from its speed relative to\n'
-              f'bare PyBullet on another machine; {standing}')
+    gazebo = (
+        'Gazebo, no subscriber: estimated from its speed relative to\n'
+        f'bare PyBullet on another machine; {standing}'
+    )
     curves[gazebo] = [(case.robots, case.gazebo) for case in shown if case.gazebo]
     plot_speed(path, curves, estimated=gazebo)
 

@@ -52,8 +52,12 @@ class Swept(NamedTuple):
 
 def sweep_all() -> list[Swept]:
     """Return all kinds, robots and commands, measured."""
-    return [point for kind in KINDS for robots in TARGETS
-            for point in run_in_new_process(sweep, kind, robots)]
+    return [
+        point
+        for kind in KINDS
+        for robots in TARGETS
+        for point in run_in_new_process(sweep, kind, robots)
+    ]
 
 
 def sweep(kind: str, robots: int) -> list[Swept]:
@@ -72,22 +76,32 @@ def sweep(kind: str, robots: int) -> list[Swept]:
             server.pause()
             pairs = [(server.speed(WINDOW), loop.speed(WINDOW)) for _ in range(ROUNDS)]
             server.unpause()
-            found.append(Swept(
-                kind, robots, command,
-                tuple(ours / (GAZEBO[bare][robots] * speed) for ours, speed in pairs),
-                median(ours for ours, _ in pairs), os.getloadavg()[0]))
+            found.append(
+                Swept(
+                    kind,
+                    robots,
+                    command,
+                    tuple(ours / (GAZEBO[bare][robots] * speed) for ours, speed in pairs),
+                    median(ours for ours, _ in pairs),
+                    os.getloadavg()[0],
+                )
+            )
     return found
 
 
 def sweep_table(points: Sequence[Swept]) -> str:
     """Return the table, and the slowest command of each number of robots."""
-    rows = ['', 'times Gazebo at nine commands  robots   m/s rad/s     min  median     max '
-                ' steps/s  load']
+    rows = [
+        '',
+        'times Gazebo at nine commands  robots   m/s rad/s     min  median     max  steps/s  load',
+    ]
     for one in points:
         forward, turning = one.command
-        rows.append(f'{KINDS[one.kind][0]:30} {one.robots:6} {forward:5g} {turning:5g} '
-                    f'{min(one.quotients):7.2f} {one.middle:7.2f} {max(one.quotients):7.2f} '
-                    f'{one.steps:8.0f} {one.load:5.1f}')
+        rows.append(
+            f'{KINDS[one.kind][0]:30} {one.robots:6} {forward:5g} {turning:5g} '
+            f'{min(one.quotients):7.2f} {one.middle:7.2f} {max(one.quotients):7.2f} '
+            f'{one.steps:8.0f} {one.load:5.1f}'
+        )
     for robots, target in TARGETS.items():
         for kind, (words, *_) in KINDS.items():
             of_kind = [one for one in points if (one.kind, one.robots) == (kind, robots)]
@@ -95,8 +109,12 @@ def sweep_table(points: Sequence[Swept]) -> str:
                 worst = min(of_kind, key=lambda one: one.middle)
                 verdict = 'met' if worst.middle >= target else 'NOT met'
                 forward, turning = worst.command
-                rows.append(f'slowest command, {robots} {words}: {worst.middle:.2f} times Gazebo '
-                            f'at ({forward:g} m/s, {turning:g} rad/s) ({verdict}: {target:g})')
-    rows.append("Gazebo: estimated from its speed relative to bare PyBullet with the article's "
-                'robot on another machine')
+                rows.append(
+                    f'slowest command, {robots} {words}: {worst.middle:.2f} times Gazebo '
+                    f'at ({forward:g} m/s, {turning:g} rad/s) ({verdict}: {target:g})'
+                )
+    rows.append(
+        "Gazebo: estimated from its speed relative to bare PyBullet with the article's "
+        'robot on another machine'
+    )
     return '\n'.join(rows)

@@ -31,8 +31,9 @@ GAZEBO = {ARTICLE: 0.42}  # [rad] in Gazebo, at the same speed and time
 def heading_drift(case: tuple[str | tuple[float, int], bool]) -> float:
     """Return the drift of a robot at the worst heading [rad]."""
     robot, cone = case
-    return max(abs(math.remainder(_yaw(robot, cone, heading) - heading, math.tau))
-               for heading in HEADINGS)
+    return max(
+        abs(math.remainder(_yaw(robot, cone, heading) - heading, math.tau)) for heading in HEADINGS
+    )
 
 
 def _yaw(robot: str | tuple[float, int], cone: bool, heading: float) -> float:
@@ -55,8 +56,9 @@ def main() -> int:
     cases = list(product(ROBOTS, CONES))
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         found = dict(zip(cases, pool.map(heading_drift, cases), strict=True))
-    print(f'heading drift [rad] after {SECONDS} s at {SPEED:g} m/s, '
-          f'worst of {len(HEADINGS)} headings')
+    print(
+        f'heading drift [rad] after {SECONDS} s at {SPEED:g} m/s, worst of {len(HEADINGS)} headings'
+    )
     print(f'{"robot":24}{"pyramid":>10}{"cone":>10}{"Gazebo":>10}')
     for robot in ROBOTS:
         name = robot if isinstance(robot, str) else f'{robot[0]:g} kg, casters: {robot[1]}'

@@ -42,8 +42,10 @@ class Window:
 
     def __init__(self, *options: str) -> None:
         self._process = subprocess.Popen(
-            ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0', *options], stderr=subprocess.PIPE,
-            text=True)
+            ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0', *options],
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         assert self._process.stderr is not None
         self.process = self._process.pid  # rosrun has become the program
         self.address = self._process.stderr.readline().split()[-1]
@@ -72,8 +74,10 @@ def share(server: Server, wait: Callable[[float], object]) -> tuple[float, float
     used, begin, simulated = server.cpu_seconds(), time.monotonic(), server.simulated()
     wait(WINDOW)
     passed = time.monotonic() - begin
-    return (100.0 * (server.cpu_seconds() - used) / passed,
-            (server.simulated() - simulated) / passed)
+    return (
+        100.0 * (server.cpu_seconds() - used) / passed,
+        (server.simulated() - simulated) / passed,
+    )
 
 
 def measure_robot() -> None:
@@ -96,8 +100,10 @@ def measure_robot() -> None:
     for case, found in costs.items():
         used, factor = (statistics.median(values) for values in zip(*found, strict=True))
         added = used - statistics.median(one for one, _ in costs['no gzweb'])
-        print(f'the robot, {case:8}: {used:5.1f} % of a core ({added:+.1f}; target for a page '
-              f'{MOST_CPU:g}), real-time factor {factor:.3f} (target 1.00)')
+        print(
+            f'the robot, {case:8}: {used:5.1f} % of a core ({added:+.1f}; target for a page '
+            f'{MOST_CPU:g}), real-time factor {factor:.3f} (target 1.00)'
+        )
 
 
 def measure_changes() -> None:
@@ -113,17 +119,18 @@ def measure_model(server: Server, browser: Browser, name: str, text: str) -> Non
     delete = server.service('delete_model', DeleteModel)
     come, gone = [], []
     for _ in range(CHANGES):
-        come.append(delay(browser, lambda: server.spawn_urdf(name, text),
-                          lambda: has(browser, name)))
+        come.append(
+            delay(browser, lambda: server.spawn_urdf(name, text), lambda: has(browser, name))
+        )
         gone.append(delay(browser, lambda: delete(name), lambda: not has(browser, name)))
     for what, found in (('spawned', come), ('deleted', gone)):
-        print(f'a {name} is {what} and a page shows that within {statistics.median(found):.0f} ms, '
-              f'at most {max(found):.0f} (target {LATEST:g})')
+        print(
+            f'a {name} is {what} and a page shows that within {statistics.median(found):.0f} ms, '
+            f'at most {max(found):.0f} (target {LATEST:g})'
+        )
 
 
-def delay(
-    browser: Browser, act: Callable[[], object], condition: Callable[[], bool]
-) -> float:
+def delay(browser: Browser, act: Callable[[], object], condition: Callable[[], bool]) -> float:
     """Return the time from the beginning of an act until a page's condition holds [ms]."""
     begin = time.monotonic()
     act()
@@ -140,10 +147,18 @@ def measure_bodies(count: int) -> None:
         place = server.service('set_model_state', SetModelState)
         for number in range(count):
             server.spawn_urdf(f'ball{number}', BALL)
-            height = Pose(Point(0.0, 0.2 * (number % 20), 1.0 + 0.2 * (number // 20)),
-                          Quaternion(0.0, 0.0, 0.0, 1.0))
-            place(ModelState(f'ball{number}', height, Twist(Vector3(SPEED, 0.0, 0.0),
-                                                            Vector3(0.0, 0.0, 0.0)), ''))
+            height = Pose(
+                Point(0.0, 0.2 * (number % 20), 1.0 + 0.2 * (number // 20)),
+                Quaternion(0.0, 0.0, 0.0, 1.0),
+            )
+            place(
+                ModelState(
+                    f'ball{number}',
+                    height,
+                    Twist(Vector3(SPEED, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)),
+                    '',
+                )
+            )
         idle = statistics.median(share(server, time.sleep)[0] for _ in range(ROUNDS))
         with Browser(window.address) as browser:
             browser.wait_until(lambda: has(browser, f'ball{count - 1}'))
@@ -158,10 +173,12 @@ def measure_bodies(count: int) -> None:
                 shares.append(used)
                 factors.append(factor)
     rate = statistics.median(rates)
-    print(f'{count} moving bodies reach the page at {rate:.1f} Hz (target for {BODIES[0]}: '
-          f'{LEAST_RATE:g}); the server uses {statistics.median(shares):.1f} % of a core '
-          f'({statistics.median(shares) - idle:+.1f}), gzweb {statistics.median(own):.1f} %, '
-          f'real-time factor {statistics.median(factors):.3f}')
+    print(
+        f'{count} moving bodies reach the page at {rate:.1f} Hz (target for {BODIES[0]}: '
+        f'{LEAST_RATE:g}); the server uses {statistics.median(shares):.1f} % of a core '
+        f'({statistics.median(shares) - idle:+.1f}), gzweb {statistics.median(own):.1f} %, '
+        f'real-time factor {statistics.median(factors):.3f}'
+    )
 
 
 def has(browser: Browser, model: str) -> bool:

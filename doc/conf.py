@@ -9,8 +9,14 @@ sys.path.insert(0, str(ROOT / 'src'))
 project = 'rosbots_description'
 extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinx.ext.githubpages', 'sphinx.ext.napoleon']
 # Of the root, which is the package, only its pages.
-include_patterns = ['README.md', 'CONTRIBUTING.md', 'SECURITY.md', 'CHANGELOG.rst', 'doc/*.md',
-                    'doc/lessons/*.md']
+include_patterns = [
+    'README.md',
+    'CONTRIBUTING.md',
+    'SECURITY.md',
+    'CHANGELOG.rst',
+    'doc/*.md',
+    'doc/lessons/*.md',
+]
 root_doc = 'doc/index'
 templates_path = ['templates']
 html_additional_pages = {'index': 'redirect.html'}

@@ -68,7 +68,8 @@ def main():
             # Nothing within reach is inf, too near is -inf, and invalid is nan (REP-117).
             ranges = np.clip(np.nan_to_num(scan.ranges, nan=np.inf), scan.range_min, scan.range_max)
             forward, left = outputs(
-                layers, inputs(ranges, distance, math.cos(bearing), math.sin(bearing)))
+                layers, inputs(ranges, distance, math.cos(bearing), math.sin(bearing))
+            )
             command.linear.x, command.angular.z = SPEED * forward, TURN * left
         if not rospy.core.is_shutdown_requested():  # otherwise the last word was to stop
             commands.publish(command)

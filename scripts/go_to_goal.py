@@ -28,7 +28,7 @@ TURN = 2.0  # rate of turn per heading error [1/s]
 
 def yaw_of(q):
     """Return the rotation about z of a quaternion [rad], from -pi to pi."""
-    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y ** 2 + q.z ** 2))
+    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
 
 
 def steer(dx, dy, yaw, speed, turn):
@@ -66,7 +66,8 @@ def main():
             return
         command = Twist()
         command.linear.x, command.angular.z = steer(
-            dx, dy, yaw_of(state.pose.orientation), speed, turn)
+            dx, dy, yaw_of(state.pose.orientation), speed, turn
+        )
         if not rospy.core.is_shutdown_requested():  # otherwise the last word was to stop
             commands.publish(command)
         rate.sleep()

@@ -37,8 +37,10 @@ def environment():
 def layers_of(weights):
     """Return the layers of a policy whose weights stand in one row."""
     ends = np.cumsum([rows * columns for rows, columns in SHAPES])
-    return [part.reshape(shape) for part, shape in zip(
-        np.split(weights, ends[:-1]), SHAPES, strict=True)]
+    return [
+        part.reshape(shape)
+        for part, shape in zip(np.split(weights, ends[:-1]), SHAPES, strict=True)
+    ]
 
 
 def episode(weights, seed):
@@ -55,14 +57,20 @@ def episode(weights, seed):
 
 def learn(pool, generations, seed):
     """Return the weights, and time [s], mean return and share of successes of each generation."""
-    guess = cma.CMAEvolutionStrategy(np.zeros(sum(map(np.prod, SHAPES))), 0.5, {
-        'popsize': POPULATION, 'seed': seed, 'verbose': -9})
+    guess = cma.CMAEvolutionStrategy(
+        np.zeros(sum(map(np.prod, SHAPES))),
+        0.5,
+        {'popsize': POPULATION, 'seed': seed, 'verbose': -9},
+    )
     begin, curve = time.monotonic(), []
     for generation in range(generations):
         seeds = range(generation * EPISODES, (generation + 1) * EPISODES)
         policies = guess.ask()
-        results = np.array(pool.starmap(
-            episode, [(policy, seed) for policy in policies for seed in seeds], chunksize=1))
+        results = np.array(
+            pool.starmap(
+                episode, [(policy, seed) for policy in policies for seed in seeds], chunksize=1
+            )
+        )
         returns, successes = results.reshape(POPULATION, EPISODES, 2).mean(axis=1).T
         guess.tell(policies, -returns)
         curve.append((time.monotonic() - begin, returns.mean(), successes.mean()))

@@ -33,8 +33,9 @@ class Inputs(gymnasium.ObservationWrapper):
 def environment():
     """Return a world with episodes of at most 15 s."""
     logging.getLogger('rosbots_description').setLevel(logging.ERROR)  # the same for each world
-    return Inputs(gymnasium.make('rosbots_description.gym:rosbots/GoToGoal-v0',
-                                 max_episode_steps=150))
+    return Inputs(
+        gymnasium.make('rosbots_description.gym:rosbots/GoToGoal-v0', max_episode_steps=150)
+    )
 
 
 def reaches(model, world, seed):
@@ -56,8 +57,11 @@ class Progress(BaseCallback):
 
     def _on_rollout_end(self):
         episodes = self.model.ep_info_buffer
-        print(f'{self.num_timesteps} steps: return {np.mean([one["r"] for one in episodes]):5.2f}, '
-              f'{np.mean([one["is_success"] for one in episodes]):4.0%} reach the goal', flush=True)
+        print(
+            f'{self.num_timesteps} steps: return {np.mean([one["r"] for one in episodes]):5.2f}, '
+            f'{np.mean([one["is_success"] for one in episodes]):4.0%} reach the goal',
+            flush=True,
+        )
 
 
 def main():
@@ -69,11 +73,21 @@ def main():
     parser.add_argument('--seed', type=int, default=1)
     options = parser.parse_args()
     # The same steps, worlds and seed give the same policy on any machine with these packages.
-    worlds = make_vec_env(environment, options.worlds, seed=options.seed,
-                          vec_env_cls=SubprocVecEnv,
-                          monitor_kwargs={'info_keywords': ('is_success',)})
-    model = PPO('MlpPolicy', worlds, n_steps=1024 // options.worlds, gamma=0.98,
-                seed=options.seed, device='cpu')
+    worlds = make_vec_env(
+        environment,
+        options.worlds,
+        seed=options.seed,
+        vec_env_cls=SubprocVecEnv,
+        monitor_kwargs={'info_keywords': ('is_success',)},
+    )
+    model = PPO(
+        'MlpPolicy',
+        worlds,
+        n_steps=1024 // options.worlds,
+        gamma=0.98,
+        seed=options.seed,
+        device='cpu',
+    )
     model.learn(options.steps, Progress())
     model.save(options.policy)
     worlds.close()

@@ -24,7 +24,7 @@ SEARCH = 0.4  # rate of turn while there is no line [rad/s]
 def pixels_of(image):
     """Return the pixels of an Image, height x width x (red, green, blue), 0 to 255."""
     rows = np.frombuffer(image.data, np.uint8).reshape(image.height, image.step)
-    pixels = rows[:, :3 * image.width].reshape(image.height, image.width, 3)
+    pixels = rows[:, : 3 * image.width].reshape(image.height, image.width, 3)
     return pixels if image.encoding == 'rgb8' else pixels[:, :, ::-1]
 
 
@@ -33,7 +33,7 @@ def line_offset(pixels, top):
 
     Yellow is much red and green, and little blue. Only rows below the share `top` are looked at.
     """
-    red, green, blue = np.moveaxis(pixels[int(top * len(pixels)):].astype(int), 2, 0)
+    red, green, blue = np.moveaxis(pixels[int(top * len(pixels)) :].astype(int), 2, 0)
     yellow = (np.minimum(red, green) > 80) & (2 * blue < np.minimum(red, green))
     columns = np.nonzero(yellow)[1]
     if len(columns) < FEWEST:
@@ -71,7 +71,7 @@ def main():
             commands.publish(command)
         last = last if offset is None else offset
 
-    rospy.Subscriber('image', Image, answer, queue_size=1, buff_size=2 ** 24)
+    rospy.Subscriber('image', Image, answer, queue_size=1, buff_size=2**24)
     rospy.spin()
 
 

@@ -63,8 +63,14 @@ def main():
             yaw = 2 * np.arctan2(laser.rotation.z, laser.rotation.w)
             ranges = np.where(np.array(scan.ranges) > scan.range_min, scan.ranges, np.nan) / cell
             directions = yaw + scan.angle_min + scan.angle_increment * np.arange(len(ranges))
-            grid = add_scan(grid, laser.translation.x / cell, laser.translation.y / cell,
-                            directions, ranges, scan.range_max / cell)
+            grid = add_scan(
+                grid,
+                laser.translation.x / cell,
+                laser.translation.y / cell,
+                directions,
+                ranges,
+                scan.range_max / cell,
+            )
 
     def publish(_event):
         percent = np.where(grid == 0, -1, 100 / (1 + np.exp(-grid)))

@@ -37,10 +37,9 @@ def reach(x, y, z):
     The elbow bends in the vertical plane through the goal: a triangle of three known sides.
     """
     far, high = math.hypot(x, y), z + HAND - SHOULDER
-    cosine = (far ** 2 + high ** 2 - UPPER ** 2 - FORE ** 2) / (2 * UPPER * FORE)
+    cosine = (far**2 + high**2 - UPPER**2 - FORE**2) / (2 * UPPER * FORE)
     bend = math.acos(max(-1.0, min(1.0, cosine)))
-    lean = math.atan2(far, high) - math.atan2(
-        FORE * math.sin(bend), UPPER + FORE * math.cos(bend))
+    lean = math.atan2(far, high) - math.atan2(FORE * math.sin(bend), UPPER + FORE * math.cos(bend))
     return [math.atan2(y, x), lean, 0.0, bend, 0.0, math.pi - lean - bend, 0.0]
 
 
@@ -48,7 +47,8 @@ def main():
     """Do it."""
     rospy.init_node('pick_and_place')
     arm = actionlib.SimpleActionClient(
-        'arm_controller/follow_joint_trajectory', FollowJointTrajectoryAction)
+        'arm_controller/follow_joint_trajectory', FollowJointTrajectoryAction
+    )
     gripper = actionlib.SimpleActionClient('gripper_controller/gripper_cmd', GripperCommandAction)
     model_state = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
     rospy.wait_for_message('arm_controller/state', JointTrajectoryControllerState)
@@ -58,9 +58,13 @@ def main():
     def move(seconds, x, y, z):
         goal = FollowJointTrajectoryGoal()
         goal.trajectory.joint_names = JOINTS
-        goal.trajectory.points = [JointTrajectoryPoint(
-            positions=reach(x, y, z), velocities=[0.0] * len(JOINTS),
-            time_from_start=rospy.Duration.from_sec(seconds))]
+        goal.trajectory.points = [
+            JointTrajectoryPoint(
+                positions=reach(x, y, z),
+                velocities=[0.0] * len(JOINTS),
+                time_from_start=rospy.Duration.from_sec(seconds),
+            )
+        ]
         arm.send_goal_and_wait(goal)
         if arm.get_result().error_code:
             raise SystemExit(f'pick_and_place: {arm.get_result().error_string}')

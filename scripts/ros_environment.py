@@ -48,7 +48,10 @@ STILL, STOPPING = 0.01, 20  # speed [m/s] or [rad/s]; control periods, twice wha
 START, GOAL = (0.8, 0.6), (2.0, 0.4)  # where nothing stands: x and y, from -most to most [m]
 PATIENCE = 10.0  # [s, wall] for what is under way
 TOPICS = {  # with their periods [s], simulated
-    'scan': (LaserScan, 0.1), 'odom': (Odometry, 0.01), 'bumper_states': (ContactsState, 0.02)}
+    'scan': (LaserScan, 0.1),
+    'odom': (Odometry, 0.01),
+    'bumper_states': (ContactsState, 0.02),
+}
 FAR = np.array([1e9, 1e9, math.pi, 1e9, 1e9, 1e9], 'f')  # odometry has no bounds of its own
 WAY = np.array([1e3, 1.0, 1.0], 'f')
 
@@ -56,9 +59,13 @@ WAY = np.array([1e3, 1.0, 1.0], 'f')
 class RosGoToGoal(gymnasium.Env):
     """Spaces, rewards and options are those of rosbots/GoToGoal-v0."""
 
-    observation_space = spaces.Dict({'goal': spaces.Box(-WAY, WAY),
-                                     'laser': spaces.Box(0.1, 10.0, (361,), np.float32),
-                                     'odometry': spaces.Box(-FAR, FAR)})
+    observation_space = spaces.Dict(
+        {
+            'goal': spaces.Box(-WAY, WAY),
+            'laser': spaces.Box(0.1, 10.0, (361,), np.float32),
+            'odometry': spaces.Box(-FAR, FAR),
+        }
+    )
     action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
 
     def __init__(self, exact=True, bumper=True, model='rosbots'):
@@ -74,11 +81,15 @@ class RosGoToGoal(gymnasium.Env):
         self._state = service('get_model_state', GetModelState)
         self._newest, self._arrived = {}, threading.Condition()
         self._commands = rospy.Publisher('cmd_vel', Twist, queue_size=1, tcp_nodelay=True)
-        self._periods = {topic: period for topic, (kind, period) in TOPICS.items()
-                         if bumper or topic != 'bumper_states'}
+        self._periods = {
+            topic: period
+            for topic, (kind, period) in TOPICS.items()
+            if bumper or topic != 'bumper_states'
+        }
         for topic in self._periods:
             rospy.Subscriber(
-                topic, TOPICS[topic][0], self._keep, topic, queue_size=1, tcp_nodelay=True)
+                topic, TOPICS[topic][0], self._keep, topic, queue_size=1, tcp_nodelay=True
+            )
         end = time.monotonic() + PATIENCE
         while not self._commands.get_num_connections():  # what is published now is lost
             if time.monotonic() > end:
@@ -103,8 +114,19 @@ class RosGoToGoal(gymnasium.Env):
             if np.abs(moving['odometry'][3:]).max() < STILL:
                 break
         self._reset_world()
-        done(self._place(ModelState(self._model, Pose(Point(x, y, AT_REST), Quaternion(
-            0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))), Twist(), 'world')))
+        done(
+            self._place(
+                ModelState(
+                    self._model,
+                    Pose(
+                        Point(x, y, AT_REST),
+                        Quaternion(0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)),
+                    ),
+                    Twist(),
+                    'world',
+                )
+            )
+        )
         seen, info = self._advance()
         self._left = seen['goal'][0]
         return seen, info
@@ -139,13 +161,18 @@ class RosGoToGoal(gymnasium.Env):
         state = done(self._state(self._model, 'world'))
         with self._arrived:
             if not self._arrived.wait_for(lambda: self._is_complete(state.header.stamp), PATIENCE):
-                raise TimeoutError(f'no messages on {", ".join(self._periods)}; spawn the robot '
-                                   'with laser:=true bumper:=true')
+                raise TimeoutError(
+                    f'no messages on {", ".join(self._periods)}; spawn the robot '
+                    'with laser:=true bumper:=true'
+                )
             return self._read(state)
 
     def _is_complete(self, now):
-        return all(topic in self._newest and (now - self._newest[topic].header.stamp).to_sec()
-                   < period - 1e-9 for topic, period in self._periods.items())
+        return all(
+            topic in self._newest
+            and (now - self._newest[topic].header.stamp).to_sec() < period - 1e-9
+            for topic, period in self._periods.items()
+        )
 
     def _read(self, state):
         """Return observation and info; `state` is the robot's true pose."""
@@ -153,12 +180,19 @@ class RosGoToGoal(gymnasium.Env):
         (x, y, yaw), twist = pose_of(state.pose), odom.twist.twist
         dx, dy = self._goal - (x, y)
         distance, bearing = math.hypot(dx, dy), math.atan2(dy, dx) - yaw
-        seen = {'goal': np.array((distance, math.cos(bearing), math.sin(bearing)), 'f'),
-                'laser': np.clip(scan.ranges, scan.range_min, scan.range_max).astype('f'),
-                'odometry': np.array((*pose_of(odom.pose.pose), twist.linear.x, twist.linear.y,
-                                      twist.angular.z), 'f')}
-        return seen, {'time': state.header.stamp.to_sec(), 'pose': np.array((x, y, yaw)),
-                      'goal': self._goal, 'is_success': distance < REACHED}
+        seen = {
+            'goal': np.array((distance, math.cos(bearing), math.sin(bearing)), 'f'),
+            'laser': np.clip(scan.ranges, scan.range_min, scan.range_max).astype('f'),
+            'odometry': np.array(
+                (*pose_of(odom.pose.pose), twist.linear.x, twist.linear.y, twist.angular.z), 'f'
+            ),
+        }
+        return seen, {
+            'time': state.header.stamp.to_sec(),
+            'pose': np.array((x, y, yaw)),
+            'goal': self._goal,
+            'is_success': distance < REACHED,
+        }
 
 
 def done(answer):
@@ -171,7 +205,7 @@ def done(answer):
 def pose_of(pose):
     """Return x, y [m] and yaw [rad] of a Pose message."""
     q = pose.orientation
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y ** 2 + q.z ** 2))
+    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
     return pose.position.x, pose.position.y, yaw
 
 
@@ -186,10 +220,16 @@ def main():
         total, steps, ended = 0.0, 0, False
         while not ended:
             seen, reward, terminated, truncated, info = environment.step(
-                outputs(layers, inputs(seen['laser'], *seen['goal'])))
+                outputs(layers, inputs(seen['laser'], *seen['goal']))
+            )
             total, steps, ended = total + reward, steps + 1, terminated or truncated
-        rospy.loginfo('Episode %d: %s after %d steps, return %.2f', number,
-                      'reached the goal' if info['is_success'] else 'ended elsewhere', steps, total)
+        rospy.loginfo(
+            'Episode %d: %s after %d steps, return %.2f',
+            number,
+            'reached the goal' if info['is_success'] else 'ended elsewhere',
+            steps,
+            total,
+        )
     environment.close()
 
 

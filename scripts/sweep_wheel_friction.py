@@ -23,7 +23,7 @@ def plot(rows, path):
     for speed in np.unique(rows['speed']):
         made = (rows['speed'] == speed) & (rows['outcome'] == 'passed')
         friction, x, wheel = (rows[name][made] for name in ('friction', 'x_end', 'wheel_end'))
-        line, = axes.plot(friction, x, marker='.', label=f'robot, at {speed} m/s')
+        (line,) = axes.plot(friction, x, marker='.', label=f'robot, at {speed} m/s')
         axes.plot(friction, RADIUS * wheel, '--', color=line.get_color(), label='its wheels')
     axes.set(xlabel='coefficient of friction of the wheels', ylabel='way in 2 s from rest [m]')
     axes.grid(alpha=0.3)
@@ -40,8 +40,10 @@ def main():
     options = parser.parse_args()
     result = batch.run(SCENARIO, workers=options.workers, output=options.output)
     print(result.outcomes)
-    plot({name: np.array(column) for name, column in result.table.to_pydict().items()},
-         options.picture)
+    plot(
+        {name: np.array(column) for name, column in result.table.to_pydict().items()},
+        options.picture,
+    )
 
 
 if __name__ == '__main__':

@@ -26,7 +26,7 @@ ROOM = 1.0  # free way after which a turning robot drives again [m]
 def free_way(x, y, radius):
     """Return how far a disc at the origin can go along x before it touches a point x, y [m]."""
     ahead = (np.abs(y) < radius) & (x > 0)
-    return np.min(x[ahead] - np.sqrt(radius ** 2 - y[ahead] ** 2), initial=np.inf)
+    return np.min(x[ahead] - np.sqrt(radius**2 - y[ahead] ** 2), initial=np.inf)
 
 
 class Wanderer:
@@ -53,9 +53,13 @@ class Wanderer:
 def main():
     """Answer each scan with a command; stop the robot when the node is stopped."""
     rospy.init_node('wander')
-    wanderer = Wanderer(rospy.get_param('~radius', 0.9), rospy.get_param('~laser_x', 0.4),
-                        rospy.get_param('~gap', 0.2),
-                        rospy.get_param('~speed', 0.5), rospy.get_param('~turn', 0.6))
+    wanderer = Wanderer(
+        rospy.get_param('~radius', 0.9),
+        rospy.get_param('~laser_x', 0.4),
+        rospy.get_param('~gap', 0.2),
+        rospy.get_param('~speed', 0.5),
+        rospy.get_param('~turn', 0.6),
+    )
     commands = rospy.Publisher('cmd_vel', Twist, queue_size=1)
     rospy.on_shutdown(lambda: commands.publish(Twist()))
     rospy.on_shutdown(lambda: rospy.rostime.wallsleep(0.5))  # or it may get lost with the topic

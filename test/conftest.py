@@ -25,9 +25,20 @@ settings.register_profile('search', COMMON, max_examples=1000)
 settings.load_profile('repeat')
 
 # Each takes ten seconds or more: they begin first, so that the processes of a phase end together.
-LONGEST = ('test_strangers', 'test_batches_on_ray', 'test_xacro_sandbox', 'test_hostile',
-           'test_fork_server', 'test_benchmark_run', 'test_wheels_obey_mechanics', 'test_camera',
-           'test_varied_robots', 'test_motion_as_in_gazebo', 'test_energy', 'test_parallel')
+LONGEST = (
+    'test_strangers',
+    'test_batches_on_ray',
+    'test_xacro_sandbox',
+    'test_hostile',
+    'test_fork_server',
+    'test_benchmark_run',
+    'test_wheels_obey_mechanics',
+    'test_camera',
+    'test_varied_robots',
+    'test_motion_as_in_gazebo',
+    'test_energy',
+    'test_parallel',
+)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -20,8 +20,14 @@ from results import ROOT
 
 PROSE = ('.md', '.rst')
 LESSONS = 'doc/lessons/'  # pages that a rostest follows
-GRAPHED = ('src/rosbots_description/', 'test/unit/', 'test/engine/', 'test/support/', 'benchmark/',
-           'tools/')
+GRAPHED = (
+    'src/rosbots_description/',
+    'test/unit/',
+    'test/engine/',
+    'test/support/',
+    'benchmark/',
+    'tools/',
+)
 PLACES = (ROOT / 'src', ROOT / 'test', ROOT / 'benchmark', ROOT / 'tools')  # of absolute imports
 # A test with one of these words depends on more than it imports.
 BEYOND = ('subprocess', 'read_text', 'read_bytes', 'importlib', 'glob(')
@@ -38,13 +44,16 @@ class Choice:
 
 def changed_files() -> list[str]:
     """Return the files that differ from main, new ones included."""
+
     def git(*words: str) -> list[str]:
-        return subprocess.run(['git', *words], cwd=ROOT, capture_output=True, text=True,
-                              check=True).stdout.splitlines()
+        return subprocess.run(
+            ['git', *words], cwd=ROOT, capture_output=True, text=True, check=True
+        ).stdout.splitlines()
 
     base = git('merge-base', 'main', 'HEAD')[0]
-    return sorted({*git('diff', '--name-only', base),
-                   *git('ls-files', '--others', '--exclude-standard')})
+    return sorted(
+        {*git('diff', '--name-only', base), *git('ls-files', '--others', '--exclude-standard')}
+    )
 
 
 def choose(changed: Iterable[str]) -> Choice:
@@ -52,27 +61,37 @@ def choose(changed: Iterable[str]) -> Choice:
     changed = list(changed)
     code = [name for name in changed if not name.endswith(PROSE)]
     every = test_files()
-    unknown = [name for name in code if not (
-        name.startswith('test/rostest/')
-        or (name.startswith(GRAPHED) and name.endswith('.py') and (ROOT / name).exists()))]
+    unknown = [
+        name
+        for name in code
+        if not (
+            name.startswith('test/rostest/')
+            or (name.startswith(GRAPHED) and name.endswith('.py') and (ROOT / name).exists())
+        )
+    ]
     if unknown:
         return Choice(None, None, f'nothing: {unknown[0]} can touch every test')
     seeds = {ROOT / name for name in code}
     cases = [path for path in every if reaches_beyond(path) or seeds & dependencies(path)]
-    rostests = touched_rostests([*code, *(
-        'test/rostest/lessons.test' for name in changed if name.startswith(LESSONS))])
+    rostests = touched_rostests(
+        [*code, *('test/rostest/lessons.test' for name in changed if name.startswith(LESSONS))]
+    )
     files = sorted((ROOT / 'test' / 'rostest').glob('*.test'))
     chosen = len(files if rostests is None else rostests)
-    return Choice([str(path.relative_to(ROOT)) for path in cases], rostests,
-                  f'{len(every) - len(cases)} of {len(every)} files of test/unit and test/engine, '
-                  f'{len(files) - chosen} of {len(files)} rostests: no import leads from them to '
-                  'the change')
+    return Choice(
+        [str(path.relative_to(ROOT)) for path in cases],
+        rostests,
+        f'{len(every) - len(cases)} of {len(every)} files of test/unit and test/engine, '
+        f'{len(files) - chosen} of {len(files)} rostests: no import leads from them to '
+        'the change',
+    )
 
 
 def test_files() -> list[Path]:
     """Return the files of test/unit and test/engine."""
-    return sorted(path for level in ('unit', 'engine')
-                  for path in (ROOT / 'test' / level).rglob('test_*.py'))
+    return sorted(
+        path for level in ('unit', 'engine') for path in (ROOT / 'test' / level).rglob('test_*.py')
+    )
 
 
 def touched_rostests(code: Iterable[str]) -> list[Path] | None:
@@ -83,8 +102,11 @@ def touched_rostests(code: Iterable[str]) -> list[Path] | None:
         if name.startswith(('test/unit/', 'test/engine/')):
             continue
         if path.parent == ROOT / 'test' / 'rostest':
-            users = {one for one in path.parent.glob('*.test')
-                     if one == path or path.name in one.read_text(encoding='utf-8')}
+            users = {
+                one
+                for one in path.parent.glob('*.test')
+                if one == path or path.name in one.read_text(encoding='utf-8')
+            }
             if users:
                 found |= users
                 continue

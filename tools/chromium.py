@@ -10,8 +10,13 @@ from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
 OPTIONS = [
-    '--headless=new', '--no-sandbox', '--no-first-run', '--disable-dev-shm-usage',
-    '--disable-background-networking', '--disable-component-update', '--use-angle=swiftshader',
+    '--headless=new',
+    '--no-sandbox',
+    '--no-first-run',
+    '--disable-dev-shm-usage',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
 ]
 CLOCK = "return document.querySelector('.clock b')?.textContent ?? ''"
@@ -50,11 +55,14 @@ def chromium(size: tuple[int, int], *more: str) -> Iterator[webdriver.Chrome]:
     driver = webdriver.Chrome(service=Service('/usr/bin/chromedriver'), options=options)
     try:
         width, height = size
-        driver.execute_cdp_cmd('Emulation.setDeviceMetricsOverride', {
-            'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': False})
+        driver.execute_cdp_cmd(
+            'Emulation.setDeviceMetricsOverride',
+            {'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': False},
+        )
         driver.execute_cdp_cmd('Page.enable', {})
-        driver.execute_cdp_cmd('Page.addScriptToEvaluateOnNewDocument', {
-            'source': f'{{{DRAW_SELDOM}}}'})
+        driver.execute_cdp_cmd(
+            'Page.addScriptToEvaluateOnNewDocument', {'source': f'{{{DRAW_SELDOM}}}'}
+        )
         yield driver
     finally:
         driver.quit()
@@ -72,7 +80,8 @@ def picture(driver: webdriver.Chrome) -> Image.Image:
 def drawn(driver: webdriver.Chrome) -> None:
     """Return when the page has been drawn again, with all that it knows of now."""
     driver.execute_async_script(
-        'const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))')
+        'const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))'
+    )
 
 
 def clock(driver: webdriver.Chrome) -> str:
@@ -82,5 +91,8 @@ def clock(driver: webdriver.Chrome) -> str:
 
 def faults(driver: webdriver.Chrome) -> list[str]:
     """Return the errors that its console has shown since the last call, but for viser's own."""
-    return [entry['message'] for entry in driver.get_log('browser')
-            if entry['level'] == 'SEVERE' and UNTIDY not in entry['message']]
+    return [
+        entry['message']
+        for entry in driver.get_log('browser')
+        if entry['level'] == 'SEVERE' and UNTIDY not in entry['message']
+    ]

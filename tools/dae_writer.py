@@ -23,8 +23,12 @@ class Colour:
     gloss: float = 0.15
 
 
-def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = 'Z_UP',
-            tool: str = 'tools/make_meshes.py') -> str:
+def collada(
+    name: str,
+    parts: Sequence[tuple[Colour, Surface]],
+    up_axis: str = 'Z_UP',
+    tool: str = 'tools/make_meshes.py',
+) -> str:
     """Return the text of a Collada file with one mesh `name` in metres, joined by colour.
 
     `up_axis` is metadata for modelling tools: RViz, Gazebo and PyBullet do not
@@ -44,8 +48,7 @@ def collada(name: str, parts: Sequence[tuple[Colour, Surface]], up_axis: str = '
     _add(asset, 'unit', name='meter', meter='1')
     _add(asset, 'up_axis').text = up_axis
     _add_colours(root, joined)
-    geometry = _add(_add(root, 'library_geometries'), 'geometry',
-                              id=f'{name}-mesh', name=name)
+    geometry = _add(_add(root, 'library_geometries'), 'geometry', id=f'{name}-mesh', name=name)
     _add_mesh(geometry, name, joined)
     _add_scene(root, name, joined)
     ElementTree.indent(root, ' ')
@@ -98,8 +101,13 @@ def _add_source(mesh: ElementTree.Element, identity: str, vectors: Array) -> NDA
     source = _add(mesh, 'source', id=identity)
     array = _add(source, 'float_array', id=f'{identity}-array', count=str(rows.size))
     array.text = _numbers(rows.ravel())
-    accessor = _add(_add(source, 'technique_common'), 'accessor',
-                              source=f'#{identity}-array', count=str(len(rows)), stride='3')
+    accessor = _add(
+        _add(source, 'technique_common'),
+        'accessor',
+        source=f'#{identity}-array',
+        count=str(len(rows)),
+        stride='3',
+    )
     for axis in 'XYZ':
         _add(accessor, 'param', name=axis, type='float')
     numbers: NDArray[np.intp] = index.reshape(-1)
@@ -109,8 +117,7 @@ def _add_source(mesh: ElementTree.Element, identity: str, vectors: Array) -> NDA
 def _add_scene(root: ElementTree.Element, name: str, colours: Iterable[Colour]) -> None:
     """Add the scene with a node for the mesh."""
     scenes = _add(root, 'library_visual_scenes')
-    node = _add(_add(scenes, 'visual_scene', id='scene', name='scene'), 'node',
-                          id=name, name=name)
+    node = _add(_add(scenes, 'visual_scene', id='scene', name='scene'), 'node', id=name, name=name)
     instance = _add(node, 'instance_geometry', url=f'#{name}-mesh')
     technique = _add(_add(instance, 'bind_material'), 'technique_common')
     for colour in colours:

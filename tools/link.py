@@ -23,8 +23,11 @@ def main() -> int:
     """Link the packages in the first folder into the workspace, and report it."""
     if len(sys.argv) != 3:
         return _complain('link takes one workspace, for example: ./rosbots link ~/catkin_ws')
-    ours = {folder.name: folder for folder in sorted(Path(sys.argv[1]).absolute().iterdir())
-            if (folder / 'package.xml').exists()}
+    ours = {
+        folder.name: folder
+        for folder in sorted(Path(sys.argv[1]).absolute().iterdir())
+        if (folder / 'package.xml').exists()
+    }
     ours[ROBOT] = ROOT  # the workspace has only a part of it
     source = Path(sys.argv[2]).absolute() / 'src'
     if not source.is_dir():
@@ -32,8 +35,11 @@ def main() -> int:
     theirs = _find_theirs(source, ours)
     if source.resolve() in ROOT.parents:
         _hide(ROBOT in theirs)
-    present = [(name, folder) for name, folder in _packages(source)
-               if name in ours and _is_same(folder, ours[name])]
+    present = [
+        (name, folder)
+        for name, folder in _packages(source)
+        if name in ours and _is_same(folder, ours[name])
+    ]
     for name, folder in present:
         if name in theirs and folder.is_symlink():
             folder.unlink()
@@ -53,10 +59,17 @@ def main() -> int:
 def _find_theirs(source: Path, ours: Mapping[str, Path]) -> dict[str, Path]:
     """Return the user's packages with our names: in `source`; the robot also in underlays."""
     below = [place for place in os.environ.get('ROS_PACKAGE_PATH', '').split(os.pathsep) if place]
-    theirs = {name: folder for place in reversed(below) for name, folder in _packages(Path(place))
-              if name == ROBOT and not _is_same(folder, ours[ROBOT])}
-    return theirs | {name: folder for name, folder in _packages(source)
-                     if name in ours and not _is_same(folder, ours[name])}
+    theirs = {
+        name: folder
+        for place in reversed(below)
+        for name, folder in _packages(Path(place))
+        if name == ROBOT and not _is_same(folder, ours[ROBOT])
+    }
+    return theirs | {
+        name: folder
+        for name, folder in _packages(source)
+        if name in ours and not _is_same(folder, ours[name])
+    }
 
 
 def _packages(place: Path) -> list[tuple[str, Path]]:

@@ -18,9 +18,11 @@ from results import ROOT
 EXPECTED = ROOT / 'test' / 'rostest' / 'expected_errors.yaml'
 COLOURS = re.compile(r'\x1b\[[0-9;]*m')
 # A record of a log file, with its logger, or of a terminal.
-RECORD = re.compile(r'(?:\[(?P<logger>[\w.]+)\])?'
-                    r'\[ ?(?P<level>DEBUG|INFO|WARN|WARNING|ERROR|FATAL)\]'
-                    r'(?: \[[\d., ]+\]:| [-\d]+ [\d:,]+:)? ?(?P<message>.*)')
+RECORD = re.compile(
+    r'(?:\[(?P<logger>[\w.]+)\])?'
+    r'\[ ?(?P<level>DEBUG|INFO|WARN|WARNING|ERROR|FATAL)\]'
+    r'(?: \[[\d., ]+\]:| [-\d]+ [\d:,]+:)? ?(?P<message>.*)'
+)
 # Client library's and master's own accounts of connections: nodes that end are still called.
 CONNECTIONS = re.compile(r'(rospy|rosmaster|xmlrpc)\b')
 TRACEBACK = 'Traceback (most recent call last):'
@@ -48,7 +50,7 @@ def errors(lines: Iterable[str]) -> Iterator[str]:
             yield head['message']
         for start, line in enumerate(record):
             if TRACEBACK in line:
-                rest = dropwhile(lambda text: not text or text[0] in ' |', record[start + 1:])
+                rest = dropwhile(lambda text: not text or text[0] in ' |', record[start + 1 :])
                 yield f'traceback: {next(rest, "without an end")}'
 
 
@@ -73,5 +75,7 @@ def unexpected(logs: Iterable[Path], expected: Mapping[str, str]) -> list[str]:
                 missing -= matching
                 if not matching:
                     found.setdefault(error, log.name)
-    return [*(f'not expected, in {name}: {error}' for error, name in found.items()),
-            *(f'expected, but not logged: {pattern}' for pattern in sorted(missing))]
+    return [
+        *(f'not expected, in {name}: {error}' for error, name in found.items()),
+        *(f'expected, but not logged: {pattern}' for pattern in sorted(missing)),
+    ]

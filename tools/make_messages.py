@@ -21,7 +21,7 @@ KINDS = {'msg': MsgGenerator, 'srv': SrvGenerator}
 # The messages of an action {0}, beside the three in its file.
 ACTION = {
     'Action': '{0}ActionGoal action_goal\n{0}ActionResult action_result\n'
-              '{0}ActionFeedback action_feedback\n',
+    '{0}ActionFeedback action_feedback\n',
     'ActionGoal': 'Header header\nactionlib_msgs/GoalID goal_id\n{0}Goal goal\n',
     'ActionResult': 'Header header\nactionlib_msgs/GoalStatus status\n{0}Result result\n',
     'ActionFeedback': 'Header header\nactionlib_msgs/GoalStatus status\n{0}Feedback feedback\n',
@@ -33,8 +33,9 @@ def main(
 ) -> int:
     """Write MODULES/PACKAGE/{msg,srv} and, if given, HEADERS/PACKAGE; return the exit code."""
     with tempfile.TemporaryDirectory() as folder:
-        return _generate(companions, sorted(companions.glob(package)), modules, headers,
-                         Path(folder))
+        return _generate(
+            companions, sorted(companions.glob(package)), modules, headers, Path(folder)
+        )
 
 
 def write_action_messages(package: Path, output: Path) -> None:
@@ -61,8 +62,11 @@ def _generate(
     for package in packages:
         name = package.name
         for kind, generator in KINDS.items():
-            files = sorted(str(path) for folder in (package, actions / name)
-                           for path in folder.glob(f'{kind}/*.{kind}'))
+            files = sorted(
+                str(path)
+                for folder in (package, actions / name)
+                for path in folder.glob(f'{kind}/*.{kind}')
+            )
             target = modules / name / kind
             target.mkdir(parents=True, exist_ok=True)
             if files:
@@ -80,8 +84,7 @@ def _write_headers(
     folders = [f'{name}:{folder}' for name, paths in found.items() for folder in paths]
     message, service = ({f'{kind}.h.template': '@NAME@.h'} for kind in KINDS)
     for file in files:
-        generate_from_file(
-            file, package, str(output), str(TEMPLATES), folders, message, service)
+        generate_from_file(file, package, str(output), str(TEMPLATES), folders, message, service)
 
 
 if __name__ == '__main__':

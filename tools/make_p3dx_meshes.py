@@ -25,8 +25,14 @@ from mesh_shapes import (
     rectangle,
 )
 
-FOLDER = Path(__file__).resolve().parents[1] / 'companions' / 'gazebo_plugins' / 'test' \
-    / 'multi_robot_scenario' / 'meshes'
+FOLDER = (
+    Path(__file__).resolve().parents[1]
+    / 'companions'
+    / 'gazebo_plugins'
+    / 'test'
+    / 'multi_robot_scenario'
+    / 'meshes'
+)
 BLACK, GREY = Colour('black', (0.02, 0.02, 0.02)), Colour('grey', (0.7, 0.7, 0.7))
 
 
@@ -38,8 +44,16 @@ def about_y(*rims: tuple[float, float], sides: int = 24) -> Surface:
 
 def chassis() -> Surface:
     """Return the body: below narrower at both ends, above as long as the deck."""
-    side = np.array([(-0.17, -0.0861), (0.177, -0.0861), (0.2149, 0.036), (0.2149, 0.0861),
-                     (-0.2149, 0.0861), (-0.2149, 0.036)])
+    side = np.array(
+        [
+            (-0.17, -0.0861),
+            (0.177, -0.0861),
+            (0.2149, 0.036),
+            (0.2149, 0.0861),
+            (-0.2149, 0.0861),
+            (-0.2149, 0.036),
+        ]
+    )
     outline = np.column_stack([side[:, 1], side[:, 0]])[::-1]  # z and x; extruded along y
     surface = prism(outline, -0.1386, 0.1386)
     return surface[:, :, [1, 2, 0]]
@@ -69,8 +83,9 @@ def swivel() -> Surface:
     plate = block((-0.0277, -0.0323, 0.0227), (0.0367, 0.0323, 0.0277))
     cheek = np.array([(-0.0367, -0.0277), (-0.015, -0.0277), (0.0367, 0.0227), (-0.0277, 0.0227)])
     wall = prism(np.column_stack([cheek[:, 1], cheek[:, 0]])[::-1], 0.0, 0.005)[:, :, [1, 2, 0]]
-    return np.concatenate([plate, moved(wall, (0.0, 0.0224, 0.0)),
-                           moved(wall, (0.0, -0.0274, 0.0))])
+    return np.concatenate(
+        [plate, moved(wall, (0.0, 0.0224, 0.0)), moved(wall, (0.0, -0.0274, 0.0))]
+    )
 
 
 def top() -> Surface:
@@ -80,22 +95,28 @@ def top() -> Surface:
 
 def hokuyo() -> list[tuple[Colour, Surface]]:
     """Return a laser scanner: a box below, its window and cap above."""
-    return [(BLACK, block((-0.025, -0.025, -0.035), (0.025, 0.025, 0.0), 0.002)),
-            (GREY, prism(circle(0.02, 20), 0.0, 0.02)),
-            (BLACK, prism(circle(0.022, 20), 0.02, 0.035, 0.002))]
+    return [
+        (BLACK, block((-0.025, -0.025, -0.035), (0.025, 0.025, 0.0), 0.002)),
+        (GREY, prism(circle(0.02, 20), 0.0, 0.02)),
+        (BLACK, prism(circle(0.022, 20), 0.02, 0.035, 0.002)),
+    ]
 
 
 HUB = ((0.0525, -0.0147), (0.0525, 0.0), (0.03, 0.0153))
 PARTS = {
-    'back_rim': rim(-1.0), 'back_sonar': sonar(-1.0),
+    'back_rim': rim(-1.0),
+    'back_sonar': sonar(-1.0),
     'center_hubcap': about_y((0.016, -0.021), (0.016, 0.021), sides=12),
     'center_wheel': about_y((0.03, -0.0159), (0.0382, -0.008), (0.0382, 0.008), (0.03, 0.0159)),
-    'chassis': chassis(), 'front_rim': rim(1.0), 'front_sonar': sonar(1.0),
+    'chassis': chassis(),
+    'front_rim': rim(1.0),
+    'front_sonar': sonar(1.0),
     'left_hubcap': about_y(*[(radius, -y) for radius, y in reversed(HUB)]),
     'left_wheel': about_y((0.08, -0.0203), (0.0913, -0.012), (0.0913, 0.012), (0.08, 0.0203)),
     'right_hubcap': about_y(*HUB),
     'right_wheel': about_y((0.08, -0.0203), (0.0913, -0.012), (0.0913, 0.012), (0.08, 0.0203)),
-    'swivel': swivel(), 'top': top(),
+    'swivel': swivel(),
+    'top': top(),
 }
 
 
@@ -104,8 +125,11 @@ def stl(surface: Surface) -> bytes:
     normals = np.cross(surface[:, 1] - surface[:, 0], surface[:, 2] - surface[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     facets = np.concatenate([normals[:, None], surface], axis=1).astype('<f4')
-    return b'tools/make_p3dx_meshes.py'.ljust(80) + struct.pack('<I', len(facets)) + b''.join(
-        facet.tobytes() + b'\0\0' for facet in facets)
+    return (
+        b'tools/make_p3dx_meshes.py'.ljust(80)
+        + struct.pack('<I', len(facets))
+        + b''.join(facet.tobytes() + b'\0\0' for facet in facets)
+    )
 
 
 def main(arguments: list[str]) -> int:
@@ -116,7 +140,8 @@ def main(arguments: list[str]) -> int:
     for name, surface in PARTS.items():
         (folder / 'p3dx' / f'{name}.stl').write_bytes(stl(surface))
     (folder / 'laser' / 'hokuyo.dae').write_text(
-        collada('hokuyo', hokuyo(), tool='tools/make_p3dx_meshes.py'), encoding='utf-8')
+        collada('hokuyo', hokuyo(), tool='tools/make_p3dx_meshes.py'), encoding='utf-8'
+    )
     return 0
 
 

@@ -46,28 +46,43 @@ Steps = Sequence[tuple[list[str], str | None]]
 WINDOWS: dict[str, Steps] = {
     'rviz.png': [(['rosbots_description', 'rviz.launch'], None)],
     'gzclient.png': [
-        (['gazebo_ros', 'empty_world.launch', 'world_name:=worlds/room.world'],
-         'Physics dynamic reconfigure ready'),
-        (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
-         'Successfully spawned entity'),
+        (
+            ['gazebo_ros', 'empty_world.launch', 'world_name:=worlds/room.world'],
+            'Physics dynamic reconfigure ready',
+        ),
+        (
+            ['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
+            'Successfully spawned entity',
+        ),
     ],
     'see.png': [(['rosbots_description', 'see.launch'], 'pictures are drawn by')],
 }
 SHEET = '[style*="position: fixed"] [style*="cursor: pointer"]'  # its handle, on a phone
 NOTICE = '.mantine-Notification-closeButton'  # that the page is drawn in software
 ROOM: Steps = [
-    (['gazebo_ros', 'empty_world.launch', 'gui:=false', 'web:=true', 'web_port:=0',
-      'world_name:=worlds/room.world'], 'the world is at'),
-    (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'],
-     'Successfully spawned entity'),
+    (
+        [
+            'gazebo_ros',
+            'empty_world.launch',
+            'gui:=false',
+            'web:=true',
+            'web_port:=0',
+            'world_name:=worlds/room.world',
+        ],
+        'the world is at',
+    ),
+    (['rosbots_description', 'spawn.launch', 'x:=-0.8', 'y:=-0.9'], 'Successfully spawned entity'),
 ]
 ARM: Steps = [(['rosbots_description', 'arm.launch', 'gui:=false', 'web:=true'], 'The box is at')]
 DESKTOP, LARGE, PHONE, WIDE_PHONE = (1280, 800), (1920, 1080), (390, 844), (844, 390)  # [pixels]
 BROWSER = {  # what is started, what the address ends with, the size of the page, what is clicked on
-    'web.png': (ROOM, '', DESKTOP, ''), 'web_dark.png': (ROOM, '&darkMode', DESKTOP, ''),
-    'web_large.png': (ROOM, '', LARGE, ''), 'web_phone.png': (ROOM, '', PHONE, ''),
+    'web.png': (ROOM, '', DESKTOP, ''),
+    'web_dark.png': (ROOM, '&darkMode', DESKTOP, ''),
+    'web_large.png': (ROOM, '', LARGE, ''),
+    'web_phone.png': (ROOM, '', PHONE, ''),
     'web_phone_sheet.png': (ROOM, '&darkMode', PHONE, SHEET),
-    'web_phone_wide.png': (ROOM, '', WIDE_PHONE, ''), 'arm.png': (ARM, '', DESKTOP, ''),
+    'web_phone_wide.png': (ROOM, '', WIDE_PHONE, ''),
+    'arm.png': (ARM, '', DESKTOP, ''),
 }
 # Viser fades the scene in as it draws frames; in software that may stop halfway.
 FADED_IN = """const style = document.createElement('style');
@@ -87,9 +102,20 @@ def display(folder: Path) -> Iterator[tuple[str, Path]]:
     """Open a display; yield its name and the file of its pixels."""
     read, write = os.pipe()
     server = subprocess.Popen(
-        ['Xvfb', '-displayfd', str(write), '-nocursor', '-fbdir', folder,
-         '-screen', '0', '{}x{}x24'.format(*SCREEN)],
-        pass_fds=(write,), stderr=subprocess.DEVNULL)
+        [
+            'Xvfb',
+            '-displayfd',
+            str(write),
+            '-nocursor',
+            '-fbdir',
+            folder,
+            '-screen',
+            '0',
+            '{}x{}x24'.format(*SCREEN),
+        ],
+        pass_fds=(write,),
+        stderr=subprocess.DEVNULL,
+    )
     os.close(write)
     try:
         with os.fdopen(read) as numbers:
@@ -106,7 +132,7 @@ def screen(file: Path) -> NDArray[np.uint8]:
     size, width, height, line, colours = header[0], header[4], header[5], header[12], header[19]
     begin = size + 12 * colours  # after the colour table
     rows = np.frombuffer(content, np.uint8, line * height, begin).reshape(height, line)
-    return rows[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1]
+    return rows[:, : 4 * width].reshape(height, width, 4)[:, :, 2::-1]
 
 
 def window(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -114,7 +140,7 @@ def window(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     rows, columns = (np.flatnonzero(pixels.any(axis=axes)) for axes in ((1, 2), (0, 2)))
     if not len(rows):
         return pixels[:0, :0]
-    return pixels[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+    return pixels[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
 
 def steady(file: Path) -> NDArray[np.uint8]:
@@ -122,11 +148,17 @@ def steady(file: Path) -> NDArray[np.uint8]:
     deadline, before, alike = time.monotonic() + START, None, 1
     while time.monotonic() < deadline:
         now = window(screen(file))
-        same = (before is not None and now.shape == before.shape
-                and np.abs(now.astype(float) - before).mean() < STILL)
+        same = (
+            before is not None
+            and now.shape == before.shape
+            and np.abs(now.astype(float) - before).mean() < STILL
+        )
         alike = alike + 1 if same else 1
-        if (alike >= LOOKS and now.shape[1] > LEAST
-                and len(np.unique(now.reshape(-1, 3), axis=0)) >= FEWEST):
+        if (
+            alike >= LOOKS
+            and now.shape[1] > LEAST
+            and len(np.unique(now.reshape(-1, 3), axis=0)) >= FEWEST
+        ):
             return now
         before = now
         time.sleep(POLL_PERIOD)
@@ -139,8 +171,9 @@ def picture_of(steps: Steps, folder: Path) -> NDArray[np.uint8]:
         return steady(pixels)
 
 
-def picture_in_browser(steps: Steps, query: str, size: tuple[int, int], button: str,
-                       folder: Path) -> Image.Image:
+def picture_in_browser(
+    steps: Steps, query: str, size: tuple[int, int], button: str, folder: Path
+) -> Image.Image:
     """Open the window of a world in a browser; return what it shows.
 
     Args:
@@ -180,9 +213,7 @@ def opened(address: str, size: tuple[int, int]) -> Iterator[Chrome]:
 
 
 @contextmanager
-def started(
-    steps: Steps, folder: Path, **environment: str
-) -> Iterator[Mapping[str, str]]:
+def started(steps: Steps, folder: Path, **environment: str) -> Iterator[Mapping[str, str]]:
     """Run launch files in order, with a master of their own; yield their environment."""
     opened = []
     variables = ros_environment(folder, **environment)
@@ -212,15 +243,22 @@ def ros_environment(folder: Path, **more: str) -> Mapping[str, str]:
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
         port = probe.getsockname()[1]
-    return {**os.environ, 'ROS_MASTER_URI': f'http://localhost:{port}', 'ROS_HOSTNAME': 'localhost',
-            'ROS_LOG_DIR': str(folder), 'XDG_CONFIG_HOME': str(folder), **more}
+    return {
+        **os.environ,
+        'ROS_MASTER_URI': f'http://localhost:{port}',
+        'ROS_HOSTNAME': 'localhost',
+        'ROS_LOG_DIR': str(folder),
+        'XDG_CONFIG_HOME': str(folder),
+        **more,
+    }
 
 
 def save(image: Image.Image, path: Path) -> None:
     """Write a picture as a small file."""
     width = min(WIDTH, image.width)
     image = image.convert('RGB').resize(
-        (width, round(image.height * width / image.width)), Image.Resampling.LANCZOS)
+        (width, round(image.height * width / image.width)), Image.Resampling.LANCZOS
+    )
     # Refined: without, large faces are up to 17 of 255 off their colour.
     image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=REFINED).save(path, optimize=True)
     print(f'{path}: {path.stat().st_size / 1000:.0f} kB', flush=True)

@@ -32,8 +32,14 @@ STEP = 0.001  # [s]
 FRAME = 0.08  # [s] between two pictures
 SETTLED = 1500  # steps until the robot stands
 # Speed [m/s], turn rate [rad/s], and for how long [s].
-DRIVE = ((0.0, 0.0, 0.3), (0.5, 0.0, 1.2), (0.5, 0.9, 2.4), (0.5, -0.9, 1.6), (0.0, 1.5, 2.0),
-         (0.0, 0.0, 0.5))
+DRIVE = (
+    (0.0, 0.0, 0.3),
+    (0.5, 0.0, 1.2),
+    (0.5, 0.9, 2.4),
+    (0.5, -0.9, 1.6),
+    (0.0, 1.5, 2.0),
+    (0.0, 0.0, 0.5),
+)
 SLOW = 60.0  # [s, wall] for one picture
 MOST = 2_000_000  # bytes
 
@@ -41,10 +47,22 @@ MOST = 2_000_000  # bytes
 def steps(world: Path) -> Steps:
     """Return what is launched, with time paused."""
     return [
-        (['gazebo_ros', 'empty_world.launch', 'gui:=false', 'web:=true', 'web_port:=0',
-          'paused:=true', f'world_name:={world}'], 'the world is at'),
-        (['rosbots_description', 'spawn.launch', 'x:=-1.5', 'y:=-0.9', 'z:=0.1'],
-         'Successfully spawned entity'),
+        (
+            [
+                'gazebo_ros',
+                'empty_world.launch',
+                'gui:=false',
+                'web:=true',
+                'web_port:=0',
+                'paused:=true',
+                f'world_name:={world}',
+            ],
+            'the world is at',
+        ),
+        (
+            ['rosbots_description', 'spawn.launch', 'x:=-1.5', 'y:=-0.9', 'z:=0.1'],
+            'Successfully spawned entity',
+        ),
     ]
 
 
@@ -90,8 +108,15 @@ def main() -> int:
     try:
         with tempfile.TemporaryDirectory() as folder:
             first, *others = record(Path(folder))
-        first.save(file, save_all=True, append_images=others, duration=round(1000 * FRAME),
-                   loop=0, quality=QUALITY, method=6)
+        first.save(
+            file,
+            save_all=True,
+            append_images=others,
+            duration=round(1000 * FRAME),
+            loop=0,
+            quality=QUALITY,
+            method=6,
+        )
         if file.stat().st_size > MOST:
             raise PictureError(f'{file} is larger than the {MOST} bytes permitted')
     except (PictureError, OSError, rospy.ROSException) as error:

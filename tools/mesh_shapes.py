@@ -22,23 +22,32 @@ CREASE = math.radians(38.0)  # faces at a greater angle keep a sharp edge
 def circle(radius: float, points: int, centre: Sequence[float] = (0.0, 0.0)) -> Array:
     """Return the outline of a regular polygon whose first corner lies on the first axis."""
     angles = 2.0 * math.pi * np.arange(points) / points
-    outline: Array = np.column_stack(
-        [np.cos(angles), np.sin(angles)]) * radius + np.asarray(centre)
+    outline: Array = np.column_stack([np.cos(angles), np.sin(angles)]) * radius + np.asarray(centre)
     return outline
 
 
-def rectangle(low: Sequence[float], high: Sequence[float], corner: float = 0.0,
-              steps: int = 3) -> Array:
+def rectangle(
+    low: Sequence[float], high: Sequence[float], corner: float = 0.0, steps: int = 3
+) -> Array:
     """Return the outline of a rectangle, its corners rounded with radius `corner`."""
     (left, bottom), (right, top) = low, high
     if corner == 0.0:
         return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], float)
     arc = np.linspace(0.0, math.pi / 2.0, steps + 1)
-    centres = [(right - corner, top - corner), (left + corner, top - corner),
-               (left + corner, bottom + corner), (right - corner, bottom + corner)]
-    points = [(x + corner * math.cos(turn * math.pi / 2.0 + angle),
-               y + corner * math.sin(turn * math.pi / 2.0 + angle))
-              for turn, (x, y) in enumerate(centres) for angle in arc]
+    centres = [
+        (right - corner, top - corner),
+        (left + corner, top - corner),
+        (left + corner, bottom + corner),
+        (right - corner, bottom + corner),
+    ]
+    points = [
+        (
+            x + corner * math.cos(turn * math.pi / 2.0 + angle),
+            y + corner * math.sin(turn * math.pi / 2.0 + angle),
+        )
+        for turn, (x, y) in enumerate(centres)
+        for angle in arc
+    ]
     return np.array(points)
 
 
@@ -61,8 +70,12 @@ def at_height(outline: Array, height: float) -> Array:
 def bridge(lower: Array, upper: Array) -> Surface:
     """Return the band between two loops of equally many points; `upper` by the right-hand rule."""
     next_lower, next_upper = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
-    return np.concatenate([np.stack([lower, next_lower, next_upper], axis=1),
-                           np.stack([lower, next_upper, upper], axis=1)])
+    return np.concatenate(
+        [
+            np.stack([lower, next_lower, next_upper], axis=1),
+            np.stack([lower, next_upper, upper], axis=1),
+        ]
+    )
 
 
 def cap(loop: Array) -> Surface:
@@ -78,8 +91,9 @@ def loft(loops: Sequence[Array]) -> Surface:
 
 def ring(loops: Sequence[Array]) -> Surface:
     """Return the ring-shaped solid whose last loop joins its first, outer loops upwards first."""
-    return np.concatenate([bridge(lower, upper)
-                           for lower, upper in zip(loops, [*loops[1:], loops[0]], strict=True)])
+    return np.concatenate(
+        [bridge(lower, upper) for lower, upper in zip(loops, [*loops[1:], loops[0]], strict=True)]
+    )
 
 
 def prism(outline: Array, bottom: float, top: float, bevel: float = 0.0) -> Surface:
@@ -87,8 +101,14 @@ def prism(outline: Array, bottom: float, top: float, bevel: float = 0.0) -> Surf
     if bevel == 0.0:
         return loft([at_height(outline, bottom), at_height(outline, top)])
     small = inset(outline, bevel)
-    return loft([at_height(small, bottom), at_height(outline, bottom + bevel),
-                 at_height(outline, top - bevel), at_height(small, top)])
+    return loft(
+        [
+            at_height(small, bottom),
+            at_height(outline, bottom + bevel),
+            at_height(outline, top - bevel),
+            at_height(small, top),
+        ]
+    )
 
 
 def block(low: Sequence[float], high: Sequence[float], bevel: float = 0.0) -> Surface:
@@ -101,8 +121,15 @@ def lathe(profile: Sequence[tuple[float, float]], segments: int) -> Surface:
     return ring([at_height(circle(radius, segments), height) for radius, height in profile])
 
 
-def perforated(columns: Sequence[float], rows: Sequence[float], bottom: float, top: float, *,
-               holes: Sequence[tuple[int, int]], radius: float) -> Surface:
+def perforated(
+    columns: Sequence[float],
+    rows: Sequence[float],
+    bottom: float,
+    top: float,
+    *,
+    holes: Sequence[tuple[int, int]],
+    radius: float,
+) -> Surface:
     """Return a plate cut into cells by grid lines; the (column, row) of `holes` get a round one."""
     faces = []
     for column in range(len(columns) - 1):
@@ -113,9 +140,12 @@ def perforated(columns: Sequence[float], rows: Sequence[float], bottom: float, t
                 faces.append(_cell_with_hole(corners, radius, bottom, top))
             else:
                 faces += [cap(at_height(corners, top)), cap(at_height(corners, bottom)[::-1])]
-    rim = np.array([(x, rows[0]) for x in columns[:-1]] + [(columns[-1], y) for y in rows[:-1]]
-                   + [(x, rows[-1]) for x in columns[:0:-1]]
-                   + [(columns[0], y) for y in rows[:0:-1]])
+    rim = np.array(
+        [(x, rows[0]) for x in columns[:-1]]
+        + [(columns[-1], y) for y in rows[:-1]]
+        + [(x, rows[-1]) for x in columns[:0:-1]]
+        + [(columns[0], y) for y in rows[:0:-1]]
+    )
     faces.append(bridge(at_height(rim, bottom), at_height(rim, top)))
     return np.concatenate(faces)
 
@@ -127,8 +157,11 @@ def _cell_with_hole(corners: Array, radius: float, bottom: float, top: float) ->
     triangles = []
     for i, corner in enumerate(corners):
         here, there, beyond = octagon[2 * i], octagon[2 * i + 1], octagon[(2 * i + 2) % 8]
-        triangles += [(corner, there, here), (corner, corners[(i + 1) % 4], there),
-                        (corners[(i + 1) % 4], beyond, there)]
+        triangles += [
+            (corner, there, here),
+            (corner, corners[(i + 1) % 4], there),
+            (corners[(i + 1) % 4], beyond, there),
+        ]
     face = np.array(triangles)
     lift = [np.dstack([face, np.full(face.shape[:2], height)]) for height in (bottom, top)]
     wall = bridge(at_height(octagon[::-1], bottom), at_height(octagon[::-1], top))
@@ -151,7 +184,8 @@ def turned(surface: Surface, angle: float) -> Surface:
     """Return a surface rotated about the third axis by `angle`, counter-clockwise."""
     cosine, sine = math.cos(angle), math.sin(angle)
     rotated: Surface = surface @ np.array(
-        [[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        [[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]]
+    )
     return rotated
 
 
@@ -171,8 +205,9 @@ def corner_normals(surface: Surface) -> Array:
     normals = np.empty_like(surface)
     for face, points in enumerate(keys):
         for corner, point in enumerate(points):
-            near = [other for other in sharing[point]
-                    if unit[face] @ unit[other] > math.cos(CREASE)]
+            near = [
+                other for other in sharing[point] if unit[face] @ unit[other] > math.cos(CREASE)
+            ]
             total = area[near].sum(axis=0)
             normals[face, corner] = total / np.linalg.norm(total)
     return normals

@@ -62,11 +62,17 @@ def table(summaries: list[dict[str, Any]]) -> list[str]:
 
 def main(argv: list[str] | None = None) -> int:
     """Repeat the tests; return the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument('runs', type=int, metavar='N', help='how often')
-    parser.add_argument('--load', type=int, default=0, metavar='K',
-                        help='busy processes beside the tests (default: none)')
+    parser.add_argument(
+        '--load',
+        type=int,
+        default=0,
+        metavar='K',
+        help='busy processes beside the tests (default: none)',
+    )
     arguments, others = parser.parse_known_args(argv)
     if arguments.runs < 1 or arguments.load < 0:
         parser.error('N is at least 1, and K at least 0')
@@ -74,8 +80,12 @@ def main(argv: list[str] | None = None) -> int:
     with load(arguments.load):
         for number in range(arguments.runs):
             summaries.append(run([*others, '--seed', str(number)]))
-            print(f'\nafter run {number + 1} of {arguments.runs}, {arguments.load} busy processes',
-                  *table(summaries), sep='\n', flush=True)
+            print(
+                f'\nafter run {number + 1} of {arguments.runs}, {arguments.load} busy processes',
+                *table(summaries),
+                sep='\n',
+                flush=True,
+            )
     return 1 if any(summary['failures'] for summary in summaries) else 0
 
 

@@ -39,8 +39,12 @@ class Count:
 
     def __add__(self, other: Count) -> Count:
         """Return the sum, kind by kind."""
-        return Count(self.passed + other.passed, self.failed + other.failed,
-                     self.skipped + other.skipped, self.failures + other.failures)
+        return Count(
+            self.passed + other.passed,
+            self.failed + other.failed,
+            self.skipped + other.skipped,
+            self.failures + other.failures,
+        )
 
 
 @dataclass(frozen=True)
@@ -77,16 +81,27 @@ def read_report(path: Path) -> Report:
     except (OSError, ElementTree.ParseError):
         return Report(Count(failed=1))
     cases = list(report.iter('testcase'))
-    bad = [(case, fault) for case in cases
-           for fault in [*case.findall('failure'), *case.findall('error')][:1]]
-    told = [line for output in report.iter('system-out')
-            for line in (output.text or '').splitlines() if line.startswith('SKIPPED ')]
+    bad = [
+        (case, fault)
+        for case in cases
+        for fault in [*case.findall('failure'), *case.findall('error')][:1]
+    ]
+    told = [
+        line
+        for output in report.iter('system-out')
+        for line in (output.text or '').splitlines()
+        if line.startswith('SKIPPED ')
+    ]
     if told:
         say(*told)
     skipped = len(told) + sum(case.find('skipped') is not None for case in cases)
-    return Report(Count(len(cases) - len(bad) - skipped, len(bad), skipped),
-                  tuple(FailedCase(case.get('classname', ''), case.get('name', ''),
-                                   fault.text or '') for case, fault in bad))
+    return Report(
+        Count(len(cases) - len(bad) - skipped, len(bad), skipped),
+        tuple(
+            FailedCase(case.get('classname', ''), case.get('name', ''), fault.text or '')
+            for case, fault in bad
+        ),
+    )
 
 
 def with_exit_code(count: Count, code: int) -> Count:
@@ -107,21 +122,32 @@ class Stopwatch:
         """Return the exit code of a process when it has ended."""
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-        self._taken = (f'{time.monotonic() - self._start:.1f} s, '
-                       f'{usage.ru_utime + usage.ru_stime:.0f} s of a processor')
+        self._taken = (
+            f'{time.monotonic() - self._start:.1f} s, '
+            f'{usage.ru_utime + usage.ru_stime:.0f} s of a processor'
+        )
         return process.returncode
 
     def __str__(self) -> str:
         return self._taken
 
 
-def run_logged(command: list[str], log: Path,
-               environment: dict[str, str] | None = None) -> tuple[int, Stopwatch]:
+def run_logged(
+    command: list[str], log: Path, environment: dict[str, str] | None = None
+) -> tuple[int, Stopwatch]:
     """Run a command in the clone, with its output in a log; return its exit code and its time."""
     watch = Stopwatch()
-    with log.open('wb') as output, subprocess.Popen(
-            command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=output,
-            stderr=subprocess.STDOUT) as process:
+    with (
+        log.open('wb') as output,
+        subprocess.Popen(
+            command,
+            cwd=ROOT,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        ) as process,
+    ):
         return watch.wait(process), watch
 
 
@@ -129,8 +155,11 @@ def say_result(phase: str, name: str, count: Count, watch: Stopwatch, *more: str
     """Print one line with the result of a check, and further ones."""
     verdict = 'FAILED' if count.failed else 'ok'
     skipped = f', {count.skipped} skipped' if count.skipped else ''
-    say(f'{phase:8} {name:42} {verdict:6} {count.passed} passed, {count.failed} failed{skipped}'
-        f'  {watch}', *more)
+    say(
+        f'{phase:8} {name:42} {verdict:6} {count.passed} passed, {count.failed} failed{skipped}'
+        f'  {watch}',
+        *more,
+    )
 
 
 def end_of(log: Path) -> list[str]:
@@ -143,7 +172,10 @@ def say_failures(failures: tuple[Failure, ...], seed: int) -> None:
     """Print why each failed, and how it is repeated."""
     for failure in failures:
         has_seed = failure.command.startswith('./rosbots test ')
-        say('', f'FAILED {failure.name}',
+        say(
+            '',
+            f'FAILED {failure.name}',
             f'    repeat: {failure.command}{f" --seed {seed}" if has_seed else ""}',
             f'    log:    {failure.log}',
-            *(f'        {line}' for line in failure.reason.splitlines()[-REASON_LINES:]))
+            *(f'        {line}' for line in failure.reason.splitlines()[-REASON_LINES:]),
+        )

@@ -24,8 +24,18 @@ from results import (
 FOLDER = ROOT / 'test' / 'rostest'
 LANES = 2 + (os.cpu_count() or 1)  # a third of their time they wait for simulated time
 # Begun first, the longest first, so that the lanes end together.
-LONGEST = ('own_package', 'simulator', 'lessons', 'never_down', 'hostile_names', 'soak', 'chromium',
-           'neighbours', 'frames', 'hostile')
+LONGEST = (
+    'own_package',
+    'simulator',
+    'lessons',
+    'never_down',
+    'hostile_names',
+    'soak',
+    'chromium',
+    'neighbours',
+    'frames',
+    'hostile',
+)
 # Independent of the caller's master and addresses, and of unbuffered output.
 NOT_OURS = ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED')
 
@@ -56,8 +66,11 @@ def run_rostest(path: Path) -> Count:
     results = REPORTS / 'rostest' / path.stem
     results.mkdir(parents=True)
     log = results / 'output.log'
-    environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(results),
-                   'ROS_LOG_DIR': str(results / 'log')}
+    environment = {
+        **os.environ,
+        'ROS_TEST_RESULTS_DIR': str(results),
+        'ROS_LOG_DIR': str(results / 'log'),
+    }
     for name in NOT_OURS:
         environment.pop(name, None)
     code, watch = run_logged(['/usr/bin/rostest', str(path)], log, environment)
@@ -73,6 +86,12 @@ def run_rostest(path: Path) -> Count:
         command = f'./rosbots test {path.relative_to(ROOT)}'
         reason = '\n'.join(case.reason for case in failed[:1])
         count += Count(failures=(Failure(name, command, log, reason),))
-    say_result('rostest', path.name, count, watch,
-               *(end_of(log) if count.failed else ()), *(f'    {error}' for error in logged))
+    say_result(
+        'rostest',
+        path.name,
+        count,
+        watch,
+        *(end_of(log) if count.failed else ()),
+        *(f'    {error}' for error in logged),
+    )
     return count

@@ -75,8 +75,15 @@ def run_lint(_word: str) -> Count:
         **type_checks(),
         'site': [sys.executable, 'tools/make_site.py', str(REPORTS / 'site')],
         # the folder of a clone may have any name
-        'catkin_lint': ['catkin_lint', '-W2', '--strict', '--ignore', 'package_path_name', '.',
-                        *map(str, sorted((ROOT / 'companions').iterdir()))],
+        'catkin_lint': [
+            'catkin_lint',
+            '-W2',
+            '--strict',
+            '--ignore',
+            'package_path_name',
+            '.',
+            *map(str, sorted((ROOT / 'companions').iterdir())),
+        ],
     }
     checker = '/usr/share/roslaunch/scripts/roslaunch-check'
     for folder in sorted([ROOT / 'launch', *ROOT.glob('companions/*/launch')]):
@@ -92,10 +99,25 @@ def run_pytest(phase: str, options: list[str]) -> Count:
     """Run tests of test/<phase>."""
     report, log = REPORTS / f'{phase}.xml', REPORTS / f'{phase}.log'
     watch = Stopwatch()
-    with log.open('w') as written, subprocess.Popen(
-            [sys.executable, '-m', 'pytest', '-q', f'--timeout={HOPELESS}',
-             f'--junitxml={report}', *options], cwd=ROOT, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, errors='replace') as process:
+    with (
+        log.open('w') as written,
+        subprocess.Popen(
+            [
+                sys.executable,
+                '-m',
+                'pytest',
+                '-q',
+                f'--timeout={HOPELESS}',
+                f'--junitxml={report}',
+                *options,
+            ],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors='replace',
+        ) as process,
+    ):
         assert process.stdout is not None
         for line in process.stdout:
             written.write(line)
@@ -103,12 +125,16 @@ def run_pytest(phase: str, options: list[str]) -> Count:
         watch.wait(process)
     read = read_report(report)
     count = with_exit_code(read.count, process.returncode)
-    again = {node: case.reason for case in read.failed
-             if (node := node_of(case.class_name, case.name))} or {f'test/{phase}': ''}
+    again = {
+        node: case.reason for case in read.failed if (node := node_of(case.class_name, case.name))
+    } or {f'test/{phase}': ''}
     if count.failed:
-        count += Count(failures=tuple(
-            Failure(node, f'./rosbots test {shlex.quote(node)}', log, reason)
-            for node, reason in again.items()))
+        count += Count(
+            failures=tuple(
+                Failure(node, f'./rosbots test {shlex.quote(node)}', log, reason)
+                for node, reason in again.items()
+            )
+        )
     say_result(phase, f'test/{phase}', count, watch)
     return count
 
@@ -159,6 +185,7 @@ def run_changed(took: dict[str, float]) -> Count:
 
 def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
     """Run phases in their order, lint beside unit; note the wall time of each [s]."""
+
     def run(phase: str) -> Count:
         start = time.monotonic()
         count = PHASES[phase](word)
@@ -173,23 +200,39 @@ def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
 
 def parse(argv: list[str] | None) -> argparse.Namespace:
     """Read the command line."""
-    parser = argparse.ArgumentParser(prog='./rosbots test', description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('tests', nargs='*', metavar='PHASE|TEST',
-                        help=f'{", ".join(PHASES)}; or files, as test/rostest/frames.test and '
-                             'test/unit/test_x.py::test_y')
+    parser = argparse.ArgumentParser(
+        prog='./rosbots test',
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        'tests',
+        nargs='*',
+        metavar='PHASE|TEST',
+        help=f'{", ".join(PHASES)}; or files, as test/rostest/frames.test and '
+        'test/unit/test_x.py::test_y',
+    )
     parser.add_argument('-k', dest='word', default='', help='only tests whose name has this word')
-    parser.add_argument('--seed', type=int, default=0, metavar='N',
-                        help="of Python's hashes, and so of the order of sets (default: 0)")
-    parser.add_argument('--changed', action='store_true',
-                        help='only what the change since main can have touched, and lint')
+    parser.add_argument(
+        '--seed',
+        type=int,
+        default=0,
+        metavar='N',
+        help="of Python's hashes, and so of the order of sets (default: 0)",
+    )
+    parser.add_argument(
+        '--changed',
+        action='store_true',
+        help='only what the change since main can have touched, and lint',
+    )
     arguments = parser.parse_args(argv)
     if arguments.changed and (arguments.tests or arguments.word):
         parser.error('--changed chooses the tests; name none')
     for name in arguments.tests:
         if name not in PHASES and not (ROOT / name.partition('::')[0]).is_file():
-            parser.error(f'there is no phase and no file {name!r}; the phases are '
-                         f'{", ".join(PHASES)}')
+            parser.error(
+                f'there is no phase and no file {name!r}; the phases are {", ".join(PHASES)}'
+            )
     return arguments
 
 
@@ -212,13 +255,23 @@ def main(argv: list[str] | None = None) -> int:
         total = run_phases(phases, arguments.word, took)
         if single:
             total += run_tests(single)
-    SUMMARY.write_text(json.dumps({
-        'seconds': took | {'all': time.monotonic() - start}, 'passed': total.passed,
-        'failed': total.failed, 'failures': [failure.name for failure in total.failures]}))
+    SUMMARY.write_text(
+        json.dumps(
+            {
+                'seconds': took | {'all': time.monotonic() - start},
+                'passed': total.passed,
+                'failed': total.failed,
+                'failures': [failure.name for failure in total.failures],
+            }
+        )
+    )
     skipped = f' ({total.skipped} skipped)' if total.skipped else ''
     say_failures(total.failures, arguments.seed)
-    say('', f'all phases took {time.monotonic() - start:.0f} s{skipped}',
-        f'{total.passed} passed, {total.failed} failed')
+    say(
+        '',
+        f'all phases took {time.monotonic() - start:.0f} s{skipped}',
+        f'{total.passed} passed, {total.failed} failed',
+    )
     return 1 if total.failed else 0
 
 

@@ -34,8 +34,10 @@ from rosbots_description.sim.core.transforms import yaw_of
 
 APPEARS = 60.0  # [s, wall] timeout of the start of the simulation, and of the picture
 SENDS = 30.0  # [s, wall] timeout of the first message of a sensor
-SENSORS = {f'sensor_msgs/{kind}' for kind in (
-    'Image', 'Imu', 'LaserScan', 'NavSatFix', 'PointCloud', 'PointCloud2', 'Range')}
+SENSORS = {
+    f'sensor_msgs/{kind}'
+    for kind in ('Image', 'Imu', 'LaserScan', 'NavSatFix', 'PointCloud', 'PointCloud2', 'Range')
+}
 MEASURED = 6.0  # [s, wall] over which the real-time factor is taken
 RATE = 20.0  # of commands [Hz]
 SIZE = (320, 240)  # of the picture [pixels]; taken at twice that
@@ -66,12 +68,26 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument('--turn', type=float, default=0.5, help='in place [rad/s] (default: 0.5)')
     made.add_argument('--seconds', type=float, default=3.0, help='of each [s] (default: 3)')
     made.add_argument('--picture', metavar='FILE', type=Path, help='WebP, JPEG or PNG')
-    made.add_argument('--distance', type=float, metavar='M',
-                      help='of the camera [m] (default: by the distances between the links)')
-    made.add_argument('--bearing', type=float, default=-0.6, metavar='RAD',
-                      help='of the camera, seen from the robot (default: -0.6, on its right)')
-    made.add_argument('--pitch', type=float, default=0.4, metavar='RAD',
-                      help='of the camera, downwards (default: 0.4)')
+    made.add_argument(
+        '--distance',
+        type=float,
+        metavar='M',
+        help='of the camera [m] (default: by the distances between the links)',
+    )
+    made.add_argument(
+        '--bearing',
+        type=float,
+        default=-0.6,
+        metavar='RAD',
+        help='of the camera, seen from the robot (default: -0.6, on its right)',
+    )
+    made.add_argument(
+        '--pitch',
+        type=float,
+        default=0.4,
+        metavar='RAD',
+        help='of the camera, downwards (default: 0.4)',
+    )
     return made
 
 
@@ -106,8 +122,7 @@ def wait_for(model: str) -> None:
     """
     began = time.monotonic()
     rospy.wait_for_service('/gazebo/get_world_properties', APPEARS)
-    while model not in (names := call(
-            'get_world_properties', GetWorldProperties).model_names):
+    while model not in (names := call('get_world_properties', GetWorldProperties).model_names):
         if time.monotonic() - began > APPEARS:
             raise TrialError(f"there is no model '{model}'; there are {', '.join(names)}")
         time.sleep(0.5)
@@ -132,17 +147,22 @@ def measure_speed() -> str:
     before, used, began = simulated(), processor_time(), time.monotonic()
     time.sleep(MEASURED)
     elapsed = simulated() - before
-    return (f'real-time factor {elapsed / (time.monotonic() - began):.2f}, load '
-            f'{(processor_time() - used) / elapsed:.2f} s per simulated second, '
-            f'{os.getloadavg()[0]:.1f} processes on {os.cpu_count()} processors')
+    return (
+        f'real-time factor {elapsed / (time.monotonic() - began):.2f}, load '
+        f'{(processor_time() - used) / elapsed:.2f} s per simulated second, '
+        f'{os.getloadavg()[0]:.1f} processes on {os.cpu_count()} processors'
+    )
 
 
 def sensors() -> str:
     """Return which sensor topics of the simulator send a message, in words."""
     published, _, _ = rospy.get_master().getSystemState()[2]
     kinds = dict(rospy.get_published_topics())
-    topics = sorted(topic for topic, nodes in published if '/gazebo' in nodes
-                    and kinds.get(topic) in SENSORS and not topic.startswith('/gazebo/'))
+    topics = sorted(
+        topic
+        for topic, nodes in published
+        if '/gazebo' in nodes and kinds.get(topic) in SENSORS and not topic.startswith('/gazebo/')
+    )
     words = []
     for topic in topics:
         try:
@@ -166,11 +186,13 @@ def drive(model: str, publisher: rospy.Publisher, command: Twist, seconds: float
     heading = heading_of(before)
     x, y = after.position.x - before.position.x, after.position.y - before.position.y
     turned = (heading_of(after) - heading + pi) % (2 * pi) - pi
-    return (f'{command.linear.x:g} m/s, {command.linear.y:g} m/s to the left and '
-            f'{command.angular.z:g} rad/s for {seconds:g} s: '
-            f'{x * cos(heading) + y * sin(heading):.2f} m forward, '
-            f'{y * cos(heading) - x * sin(heading):.2f} m to the left, turned by {turned:.2f} rad, '
-            f'now {after.position.z:.2f} m high')
+    return (
+        f'{command.linear.x:g} m/s, {command.linear.y:g} m/s to the left and '
+        f'{command.angular.z:g} rad/s for {seconds:g} s: '
+        f'{x * cos(heading) + y * sin(heading):.2f} m forward, '
+        f'{y * cos(heading) - x * sin(heading):.2f} m to the left, turned by {turned:.2f} rad, '
+        f'now {after.position.z:.2f} m high'
+    )
 
 
 def drive_all(options: argparse.Namespace) -> None:
@@ -181,9 +203,11 @@ def drive_all(options: argparse.Namespace) -> None:
         if time.monotonic() - began > APPEARS:
             raise TrialError(f'nothing subscribes to {options.drive}')
         time.sleep(0.1)
-    for attribute, part, value in (('linear', 'x', options.speed),
-                                   ('linear', 'y', options.sideways),
-                                   ('angular', 'z', options.turn)):
+    for attribute, part, value in (
+        ('linear', 'x', options.speed),
+        ('linear', 'y', options.sideways),
+        ('angular', 'z', options.turn),
+    ):
         if value:
             command = Twist()
             setattr(getattr(command, attribute), part, value)
@@ -194,10 +218,14 @@ def drive_all(options: argparse.Namespace) -> None:
 def extent(model: str) -> tuple[tuple[float, float, float], float]:
     """Return the centre of a model's link frames and the radius of a ball around them [m]."""
     names = call('get_model_properties', GetModelProperties, model_name=model).body_names
-    points = [call('get_link_state', GetLinkState, link_name=f'{model}::{name}').link_state.pose
-              .position for name in names]
-    lows, highs = (tuple(chosen(getattr(point, axis) for point in points) for axis in 'xyz')
-                   for chosen in (min, max))
+    points = [
+        call('get_link_state', GetLinkState, link_name=f'{model}::{name}').link_state.pose.position
+        for name in names
+    ]
+    lows, highs = (
+        tuple(chosen(getattr(point, axis) for point in points) for axis in 'xyz')
+        for chosen in (min, max)
+    )
     centre = tuple((low + high) / 2 for low, high in zip(lows, highs, strict=True))
     return centre, max(hypot(*(high - low for low, high in zip(lows, highs, strict=True))) / 2, 0.1)
 
@@ -213,15 +241,23 @@ def camera_pose(options: argparse.Namespace) -> Pose:
     made.position.z = z + distance * sin(options.pitch)
     half_turn, half_pitch = (bearing + pi) / 2, options.pitch / 2
     made.orientation = Quaternion(
-        -sin(half_turn) * sin(half_pitch), cos(half_turn) * sin(half_pitch),
-        sin(half_turn) * cos(half_pitch), cos(half_turn) * cos(half_pitch))
+        -sin(half_turn) * sin(half_pitch),
+        cos(half_turn) * sin(half_pitch),
+        sin(half_turn) * cos(half_pitch),
+        cos(half_turn) * cos(half_pitch),
+    )
     return made
 
 
 def take_picture(options: argparse.Namespace) -> None:
     """Write what a camera sees of the model, which is removed again."""
-    call('spawn_sdf_model', SpawnModel, model_name=CAMERA, model_xml=CAMERA_SDF,
-         initial_pose=camera_pose(options))
+    call(
+        'spawn_sdf_model',
+        SpawnModel,
+        model_name=CAMERA,
+        model_xml=CAMERA_SDF,
+        initial_pose=camera_pose(options),
+    )
     try:
         seen = rospy.wait_for_message(f'/{CAMERA}/image_raw', ImageMessage, APPEARS)
     finally:

@@ -1,4 +1,5 @@
 """Tell catkin where the Python module controller_manager lies."""
+
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Drive a robot from the keys of a terminal."""
+
 import sys
 
 from rosbots_simulator.cli.program import run

@@ -21,7 +21,11 @@ def go_to(run):
         turn = math.remainder(math.atan2(goal_y - y, goal_x - x) - yaw, math.tau)
         if distance < REACHED:
             turn, distance = 0.0, 0.0
-        return {'/part2_cmr/cmd_vel': {
-            'linear': {'x': min(0.6, distance)}, 'angular': {'z': max(-1.0, min(1.0, 2.0 * turn))}}}
+        return {
+            '/part2_cmr/cmd_vel': {
+                'linear': {'x': min(0.6, distance)},
+                'angular': {'z': max(-1.0, min(1.0, 2.0 * turn))},
+            }
+        }
 
     return act

@@ -17,10 +17,18 @@ EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
 EXAMPLES = [
     pytest.param(page, code, printed, id=f'{page.stem}-{number}')
     for page in PAGES
-    for number, (code, printed) in enumerate(EXAMPLE.findall(page.read_text(encoding='utf-8')))]
+    for number, (code, printed) in enumerate(EXAMPLE.findall(page.read_text(encoding='utf-8')))
+]
 
-OWNERS = {'world': World, 'robot': Model, 'link': Link, 'joint': Joint, 'drive': Drive,
-          'manager': ControllerManager, 'arm': JointTrajectoryController}
+OWNERS = {
+    'world': World,
+    'robot': Model,
+    'link': Link,
+    'joint': Joint,
+    'drive': Drive,
+    'manager': ControllerManager,
+    'arm': JointTrajectoryController,
+}
 CALLS = re.compile(r'`(\w*)\.(\w+)\(([^`()]*)\)`')
 
 
@@ -42,12 +50,15 @@ def test_tables_name_arguments_as_they_are():
         named = {one.partition('=')[0]: one.partition('=')[2] for one in arguments}
         positional = [name for name, default in named.items() if default != '…']
         taken = [name for name in signature.parameters if name != 'self']
-        assert taken[:len(positional)] == positional, (owner, method)
+        assert taken[: len(positional)] == positional, (owner, method)
         assert {*named} <= {*taken}, (owner, method)
         for name, default in named.items():
             if default not in ('', '…'):
                 assert signature.parameters[name].default == ast.literal_eval(default), (
-                    owner, method, name)
+                    owner,
+                    method,
+                    name,
+                )
 
 
 def test_every_example_has_its_output():
@@ -65,5 +76,10 @@ def test_output_of_an_example_is_that_of_the_page(page, code, printed, capsys):
 def test_example_is_lint_clean(_page, code, _printed):
     checked = subprocess.run(
         ['ruff', 'check', '--ignore', 'ANN,D100,D107,T201', '--stdin-filename', 'example.py', '-'],
-        input=code, cwd=ROOT, capture_output=True, text=True, check=False)
+        input=code,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert checked.returncode == 0, checked.stdout + checked.stderr

@@ -22,8 +22,14 @@ ROBOTS = DATA / 'gazebo' / 'robots'
 RECORDED = json.loads((DATA / 'gazebo' / 'controller_interfaces.json').read_text())
 ARM = (ROBOTS / 'twolink.urdf').read_text()
 BURGER = (ROBOTS / 'burger_ros_control.urdf').read_text()
-MANAGER = ('list_controller_types', 'list_controllers', 'load_controller',
-           'reload_controller_libraries', 'switch_controller', 'unload_controller')
+MANAGER = (
+    'list_controller_types',
+    'list_controllers',
+    'load_controller',
+    'reload_controller_libraries',
+    'switch_controller',
+    'unload_controller',
+)
 STRICT, BEST_EFFORT = 2, 1
 JSC = 'joint_state_controller'
 
@@ -59,8 +65,10 @@ class ControllersTest(SimulatorTest):
         for name, value in (parameters or {}).items():
             self.set_parameter(f'{namespace}/{name}', value)
         self.assertTrue(self.spawn('robot', text).success)
-        wait_until(lambda: managers() >= {f'{namespace}/controller_manager/{name}'
-                                          for name in MANAGER}, 'the controller manager')
+        wait_until(
+            lambda: managers() >= {f'{namespace}/controller_manager/{name}' for name in MANAGER},
+            'the controller manager',
+        )
         self.manager = f'{namespace}/controller_manager'
 
     def call(self, service, kind, *arguments, **named):
@@ -73,12 +81,18 @@ class ControllersTest(SimulatorTest):
         return self.call('unload_controller', UnloadController, name).ok
 
     def switch(self, start=(), stop=(), strictness=STRICT):
-        return self.call('switch_controller', SwitchController, start_controllers=list(start),
-                         stop_controllers=list(stop), strictness=strictness).ok
+        return self.call(
+            'switch_controller',
+            SwitchController,
+            start_controllers=list(start),
+            stop_controllers=list(stop),
+            strictness=strictness,
+        ).ok
 
     def states(self):
-        return {one.name: one.state
-                for one in self.call('list_controllers', ListControllers).controller}
+        return {
+            one.name: one.state for one in self.call('list_controllers', ListControllers).controller
+        }
 
     def publisher(self, topic, kind):
         made = rospy.Publisher(topic, kind, queue_size=10)
@@ -90,13 +104,18 @@ class ControllersTest(SimulatorTest):
         """Return the process of a program of controller_manager, which prints to a pipe."""
         process = subprocess.Popen(
             ['rosrun', 'controller_manager', name, *arguments, '__ns:=/arm'],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         self.addCleanup(process.kill)  # unless it has ended
         return process
 
     def heard_errors(self, *texts):
-        wait_until(lambda: all(any(text in error for error in self.errors) for text in texts),
-                   f'{texts} in {self.errors}')
+        wait_until(
+            lambda: all(any(text in error for error in self.errors) for text in texts),
+            f'{texts} in {self.errors}',
+        )
 
 
 def managers():
@@ -113,19 +132,24 @@ def graph():
     def of_simulator(entries):
         return [name for name, nodes in entries if '/gazebo' in nodes]
 
-    return {'publishes': {name: types[name] for name in of_simulator(published)},
-            'subscribes': {name: types[name] for name in of_simulator(subscribed)},
-            'services': {name: rosservice.get_service_type(name)
-                         for name in of_simulator(services)}}
+    return {
+        'publishes': {name: types[name] for name in of_simulator(published)},
+        'subscribes': {name: types[name] for name in of_simulator(subscribed)},
+        'services': {name: rosservice.get_service_type(name) for name in of_simulator(services)},
+    }
 
 
 def added(before):
     """Return what has come since."""
-    return {kind: {name: entry for name, entry in entries.items() if name not in before[kind]}
-            for kind, entries in graph().items()}
+    return {
+        kind: {name: entry for name, entry in entries.items() if name not in before[kind]}
+        for kind, entries in graph().items()
+    }
 
 
 def periods(messages):
     """Return the times between messages [s]."""
-    return {round((after.header.stamp - before.header.stamp).to_sec(), 6)
-            for before, after in pairwise(messages)}
+    return {
+        round((after.header.stamp - before.header.stamp).to_sec(), 6)
+        for before, after in pairwise(messages)
+    }

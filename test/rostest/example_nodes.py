@@ -28,15 +28,22 @@ class ExampleNodeTest(unittest.TestCase):
 
     def _record(self, odometry):
         pose, twist = odometry.pose.pose, odometry.twist.twist
-        self.track.append((odometry.header.stamp.to_sec(), pose.position.x, pose.position.y,
-                           2 * np.arctan2(pose.orientation.z, pose.orientation.w)))
+        self.track.append(
+            (
+                odometry.header.stamp.to_sec(),
+                pose.position.x,
+                pose.position.y,
+                2 * np.arctan2(pose.orientation.z, pose.orientation.w),
+            )
+        )
         self.speed = max(abs(twist.linear.x), abs(twist.angular.z))
 
     def limit_rate(self, rate):
         """Let the simulator make at most so many steps per second; 0 is as many as it can."""
         now = proxy('get_physics_properties', GetPhysicsProperties)()
         done = proxy('set_physics_properties', SetPhysicsProperties)(
-            now.time_step, rate, now.gravity, now.ode_config)
+            now.time_step, rate, now.gravity, now.ode_config
+        )
         self.assertTrue(done.success)
 
     def seconds(self):
@@ -47,8 +54,9 @@ class ExampleNodeTest(unittest.TestCase):
         """Return every nth point of the track of the axle's middle, as (time [s], x, y [m])."""
         time, x, y, yaw = np.array(self.track[::every]).T
         cos, sin = np.cos(yaw), np.sin(yaw)
-        return np.stack([time, x + AXLE[0] * cos - AXLE[1] * sin,
-                         y + AXLE[0] * sin + AXLE[1] * cos], axis=1)
+        return np.stack(
+            [time, x + AXLE[0] * cos - AXLE[1] * sin, y + AXLE[0] * sin + AXLE[1] * cos], axis=1
+        )
 
     def kill_and_expect_rest(self, node):
         """Stop a node as rosnode kill does; the robot must not drive on."""

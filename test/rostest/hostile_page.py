@@ -99,4 +99,4 @@ def watch(driver, ignores_policy=True):
 def recorded(data):
     """Return the messages of a recording, from the text in its page."""
     packed = base64.b64decode(data)
-    return zstandard.ZstdDecompressor().decompressobj().decompress(packed[packed.index(MAGIC):])
+    return zstandard.ZstdDecompressor().decompressobj().decompress(packed[packed.index(MAGIC) :])

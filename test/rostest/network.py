@@ -26,7 +26,9 @@ SERVICES = {
     'get_model_properties': ('gazebo_msgs/GetModelProperties', '5717f7bd34ed990fa80e28b3015027a3'),
     'get_model_state': ('gazebo_msgs/GetModelState', '4c515e936d3319c9610c559c60bfc3d4'),
     'get_physics_properties': (
-        'gazebo_msgs/GetPhysicsProperties', '575a5e74786981b7df2e3afc567693a6'),
+        'gazebo_msgs/GetPhysicsProperties',
+        '575a5e74786981b7df2e3afc567693a6',
+    ),
     'get_world_properties': ('gazebo_msgs/GetWorldProperties', '36bb0f2eccf4d8be971410c22818ba3f'),
     'pause_physics': EMPTY,
     'reset_simulation': EMPTY,
@@ -37,11 +39,15 @@ SERVICES = {
     'set_link_state': ('gazebo_msgs/SetLinkState', '8a5146eb66ae4d26b0860b08f3f271be'),
     'set_logger_level': ('roscpp/SetLoggerLevel', '51da076440d78ca1684d36c868df61ea'),
     'set_model_configuration': (
-        'gazebo_msgs/SetModelConfiguration', '10e3139d3b669c40afc057d38956fff7'),
+        'gazebo_msgs/SetModelConfiguration',
+        '10e3139d3b669c40afc057d38956fff7',
+    ),
     'set_model_state': ('gazebo_msgs/SetModelState', '5b3ab0281d4f5445def017e3a2e4a07b'),
     'set_parameters': ('dynamic_reconfigure/Reconfigure', 'bb125d226a21982a4a98760418dc2672'),
     'set_physics_properties': (
-        'gazebo_msgs/SetPhysicsProperties', '97e2057080558ce4730434b5fae75c91'),
+        'gazebo_msgs/SetPhysicsProperties',
+        '97e2057080558ce4730434b5fae75c91',
+    ),
     'spawn_sdf_model': SPAWN,
     'spawn_urdf_model': SPAWN,
     'unpause_physics': EMPTY,
@@ -56,20 +62,44 @@ PUBLISHED = {
 SUBSCRIBED = {'/gazebo/set_link_state': LinkState, '/gazebo/set_model_state': ModelState}
 OF_ROSOUT = {'/rosout'}  # /rosout_agg exists where roslaunch starts a master
 OUR_TOPICS = {
-    '/gazebo/visual_markers', '/gazebo/view/markers', '/gazebo/view/frames',
-    '/gazebo/view/image_raw', '/gazebo/view/scene', '/gazebo/view/motion', '/gazebo/view/contacts',
+    '/gazebo/visual_markers',
+    '/gazebo/view/markers',
+    '/gazebo/view/frames',
+    '/gazebo/view/image_raw',
+    '/gazebo/view/scene',
+    '/gazebo/view/motion',
+    '/gazebo/view/contacts',
     '/tf_static',
 }
 OUR_SERVICES = {
-    'get_friction', 'get_model_description', 'get_model_library', 'get_model_omissions',
-    'hold_model', 'insert_model', 'save_world', 'set_friction', 'step',
+    'get_friction',
+    'get_model_description',
+    'get_model_library',
+    'get_model_omissions',
+    'hold_model',
+    'insert_model',
+    'save_world',
+    'set_friction',
+    'step',
 }
 # What the article's robot adds when it is spawned.
 OF_ROBOT = {'/odom', '/joint_states', '/tf', '/part2_cmr/cmd_vel'}
 PARAMETERS = {
-    'auto_disable_bodies', 'cfm', 'contact_max_correcting_vel', 'contact_surface_layer', 'erp',
-    'gravity_x', 'gravity_y', 'gravity_z', 'max_contacts', 'max_update_rate', 'sor_pgs_iters',
-    'sor_pgs_precon_iters', 'sor_pgs_rms_error_tol', 'sor_pgs_w', 'time_step',
+    'auto_disable_bodies',
+    'cfm',
+    'contact_max_correcting_vel',
+    'contact_surface_layer',
+    'erp',
+    'gravity_x',
+    'gravity_y',
+    'gravity_z',
+    'max_contacts',
+    'max_update_rate',
+    'sor_pgs_iters',
+    'sor_pgs_precon_iters',
+    'sor_pgs_rms_error_tol',
+    'sor_pgs_w',
+    'time_step',
 }
 
 

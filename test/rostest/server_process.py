@@ -20,15 +20,27 @@ class ServerProcess:
         prefix: a command that executes the program, such as `nice`.
     """
 
-    def __init__(self, *arguments, program='gzserver', package='gazebo_ros', master=None,
-                 prefix=(), **environment):
+    def __init__(
+        self,
+        *arguments,
+        program='gzserver',
+        package='gazebo_ros',
+        master=None,
+        prefix=(),
+        **environment,
+    ):
         self.name = next((a.removeprefix('__name:=') for a in arguments if '__name' in a), 'gazebo')
         self.master = master or os.environ['ROS_MASTER_URI']
         self.environment = {**os.environ, 'ROS_MASTER_URI': self.master, **environment}
         self.process = subprocess.Popen(
-            [*prefix, 'rosrun', package, program, *arguments], env=self.environment,
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            start_new_session=True)
+            [*prefix, 'rosrun', package, program, *arguments],
+            env=self.environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
 
     def __enter__(self):
         return self
@@ -67,8 +79,13 @@ class ServerProcess:
     def call(self, service, *arguments):
         """Call a service from a new process with this server's master."""
         ended = subprocess.run(
-            ['rosservice', 'call', f'/{self.name}/{service}', *arguments], env=self.environment,
-            capture_output=True, text=True, timeout=DEADLINE, check=True)
+            ['rosservice', 'call', f'/{self.name}/{service}', *arguments],
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=DEADLINE,
+            check=True,
+        )
         return yaml.safe_load(ended.stdout)
 
     def world(self):
@@ -86,15 +103,19 @@ class ServerProcess:
         tasks = Path(f'/proc/{self.process.pid}/task')
         while True:
             try:
-                return [pid for task in tasks.glob('*/children')
-                        for pid in task.read_text().split()]
+                return [
+                    pid for task in tasks.glob('*/children') for pid in task.read_text().split()
+                ]
             except (FileNotFoundError, ProcessLookupError):
                 pass  # the thread has ended; another one has its children
 
     def sandbox_runs(self):
         """Return the ids of the processes in which models are being tested."""
-        return [pid for child in self.children()
-                for pid in Path(f'/proc/{child}/task/{child}/children').read_text().split()]
+        return [
+            pid
+            for child in self.children()
+            for pid in Path(f'/proc/{child}/task/{child}/children').read_text().split()
+        ]
 
     def end(self):
         """End it by SIGINT; return its exit code and output."""
@@ -124,8 +145,11 @@ class MasterProcess:
     def start(self):
         """Start or restart it; return its URI."""
         self._process = subprocess.Popen(
-            ['rosmaster', '--core', '-p', str(self._port)], stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            ['rosmaster', '--core', '-p', str(self._port)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         address = f'http://localhost:{self._port}'
         wait_until(rosgraph.Master('/test', address).is_online, 'the second master')
         return address

@@ -67,8 +67,10 @@ def hears(subscriber, node='/gazebo'):
         connections = ServerProxy(address).getBusInfo('/test')[2]
     except (OSError, rosgraph.MasterError, TypeError):  # it has not started yet
         return False
-    return any((other, way, topic) == (rospy.get_name(), 'o', subscriber.resolved_name)
-               for _, other, way, _, topic, *_ in connections)
+    return any(
+        (other, way, topic) == (rospy.get_name(), 'o', subscriber.resolved_name)
+        for _, other, way, _, topic, *_ in connections
+    )
 
 
 def pose(x=0.0, y=0.0, z=0.5):
@@ -96,8 +98,13 @@ SENSOR_BOX = """<robot name="box">
 def spawn_model(name, text):
     """Run spawn_model on a text until it ends; return the completed process."""
     return subprocess.run(
-        ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-stdin', '-model', name], input=text,
-        capture_output=True, text=True, timeout=DEADLINE, check=False)
+        ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-stdin', '-model', name],
+        input=text,
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE,
+        check=False,
+    )
 
 
 class SimulatorTest(unittest.TestCase):
@@ -149,9 +156,13 @@ class SimulatorTest(unittest.TestCase):
         messages = []
         subscriber = rospy.Subscriber(topic, message_class, messages.append, tcp_nodelay=True)
         self._connections.append(subscriber)
-        wait_until(lambda: subscriber.get_num_connections() and all(
-            hears(subscriber, one.callerid_pub) for one in subscriber.impl.connections),
-            f'a publisher of {topic}')
+        wait_until(
+            lambda: (
+                subscriber.get_num_connections()
+                and all(hears(subscriber, one.callerid_pub) for one in subscriber.impl.connections)
+            ),
+            f'a publisher of {topic}',
+        )
         return messages
 
     def disconnect(self):

@@ -20,8 +20,13 @@ class Terminal:
         self._lock = threading.Lock()
         self.saved_mode = termios.tcgetattr(self._screen)
         self.process = subprocess.Popen(
-            command, stdin=self._screen, stdout=self._screen, stderr=self._screen,
-            start_new_session=True, **options)
+            command,
+            stdin=self._screen,
+            stdout=self._screen,
+            stderr=self._screen,
+            start_new_session=True,
+            **options,
+        )
         self._shown = b''
         self._reader = threading.Thread(target=self._read_on, daemon=True)
         self._reader.start()
@@ -62,8 +67,9 @@ def open_display():
     if 'DISPLAY' in os.environ:
         return lambda: None
     read, write = os.pipe()
-    display = Terminal('Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24',
-                       pass_fds=(write,))
+    display = Terminal(
+        'Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24', pass_fds=(write,)
+    )
     os.close(write)
     with os.fdopen(read) as numbers:
         os.environ['DISPLAY'] = f':{numbers.readline().strip()}'

@@ -15,16 +15,21 @@ STAND, EDGES = (0.3, 0.4), 0.1 + 0.02  # where the large box is; height of the o
 
 
 class ArmTest(unittest.TestCase):
-
     def test_box_is_put_onto_the_other_one(self):
         model_state = proxy('get_model_state', GetModelState)
 
         def is_there():
             state = model_state('box', 'world')
             position, twist = state.pose.position, state.twist.linear
-            return state.success and abs(position.z - EDGES) < 0.002 and all(
-                abs(at - wanted) < 0.01 for at, wanted in zip(
-                    (position.x, position.y), STAND, strict=True)) and abs(twist.z) < 0.001
+            return (
+                state.success
+                and abs(position.z - EDGES) < 0.002
+                and all(
+                    abs(at - wanted) < 0.01
+                    for at, wanted in zip((position.x, position.y), STAND, strict=True)
+                )
+                and abs(twist.z) < 0.001
+            )
 
         wait_until(is_there, 'the box on the other one')
         wait_until(lambda: NODE not in rosnode.get_node_names(), 'the end of the node')

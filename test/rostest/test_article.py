@@ -18,9 +18,12 @@ from terminal import Terminal
 
 STEP = 90.0  # [s, wall] timeout of the output of a step
 MOVED = 0.05  # [m] or [rad], far more than a standing robot drifts
-TELEOP = (
-    ['rosrun', 'teleop_twist_keyboard', 'teleop_twist_keyboard.py', '/cmd_vel:=/part2_cmr/cmd_vel']
-)
+TELEOP = [
+    'rosrun',
+    'teleop_twist_keyboard',
+    'teleop_twist_keyboard.py',
+    '/cmd_vel:=/part2_cmr/cmd_vel',
+]
 ROSBOTS = Path(__file__).resolve().parents[2] / 'rosbots'
 SPAWN = ['roslaunch', 'rosbots_description', 'spawn.launch']
 WAITING = 'Waiting for service /gazebo/spawn_urdf_model'
@@ -30,12 +33,12 @@ DELETE = ['rosservice', 'call', '/gazebo/delete_model', "model_name: 'rosbots'"]
 
 def output_of(*command, script=''):
     result = subprocess.run(
-        command, input=script, capture_output=True, text=True, timeout=STEP, check=True)
+        command, input=script, capture_output=True, text=True, timeout=STEP, check=True
+    )
     return result.stdout
 
 
 class ArticleTest(unittest.TestCase):
-
     def setUp(self):
         self._terminals = []
 
@@ -57,8 +60,11 @@ class ArticleTest(unittest.TestCase):
     def close(self, terminal, code=0):
         """Press Ctrl-C."""
         os.killpg(terminal.process.pid, signal.SIGINT)
-        wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-                   'exit of the program', STEP)
+        wait_until(
+            lambda: terminal.shown() is not None and terminal.process.poll() is not None,
+            'exit of the program',
+            STEP,
+        )
         self.assertEqual(terminal.process.returncode, code, terminal.shown())
 
     def state(self):
@@ -75,8 +81,12 @@ class ArticleTest(unittest.TestCase):
         teleop.type(key)
         wait_until(lambda: sign * (quantity(self.state()) - start) > MOVED, f'motion by {key!r}')
         teleop.type('k')
-        wait_until(lambda: abs(self.state().twist.linear.x) < 0.01
-                   and abs(self.state().twist.angular.z) < 0.01, 'the stop')
+        wait_until(
+            lambda: (
+                abs(self.state().twist.linear.x) < 0.01 and abs(self.state().twist.angular.z) < 0.01
+            ),
+            'the stop',
+        )
 
     def test_all_steps(self):
         # 1: the package is found
@@ -127,8 +137,11 @@ class ArticleTest(unittest.TestCase):
 
     def _end(self, terminal):
         os.killpg(terminal.process.pid, signal.SIGINT)
-        wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-                   'exit of RViz', STEP)
+        wait_until(
+            lambda: terminal.shown() is not None and terminal.process.poll() is not None,
+            'exit of RViz',
+            STEP,
+        )
 
 
 if __name__ == '__main__':

@@ -12,8 +12,10 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from simulator import BOX, COMMANDS, SimulatorTest, pose, proxy, topics_of, wait_until
 
-LINK = '<link name="{}"><inertial><mass value="1"/>' \
-       '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{}</link>'
+LINK = (
+    '<link name="{}"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{}</link>'
+)
 MESH = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
 
 
@@ -26,7 +28,8 @@ REFUSED = {
     'unclosed tags': ('<robot name="bad"><link name="a">', ['line']),
     'mesh path out of its package': (
         robot(LINK.format('a', MESH.format('package://rosbots_description/%2e%2e/m.stl'))),
-        ['leads out of package']),
+        ['leads out of package'],
+    ),
     'crossed tags': ('<robot name="bad"><link name="a"></robot></link>', ['line']),
     'endless comment': (robot('<!-- ', LINK.format('a', '')), ['<!--', '-->']),
     'no inertial': (robot('<link name="a"/>'), ["'a'", '<inertial>']),
@@ -34,12 +37,17 @@ REFUSED = {
     'no links': (robot(), ['link']),
     'unexpanded xacro': (
         '<robot name="bad" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:wheel/></robot>',
-        ['xacro']),
+        ['xacro'],
+    ),
     'two roots': (robot(LINK.format('a', ''), LINK.format('b', '')), ['a', 'b']),
     'duplicate names': (robot(LINK.format('a', ''), LINK.format('a', '')), ["'a'"]),
-    'joint to a missing link': (robot(
-        LINK.format('a', ''),
-        '<joint name="j" type="fixed"><parent link="a"/><child link="gone"/></joint>'), ['gone']),
+    'joint to a missing link': (
+        robot(
+            LINK.format('a', ''),
+            '<joint name="j" type="fixed"><parent link="a"/><child link="gone"/></joint>',
+        ),
+        ['gone'],
+    ),
     'mass of nan': (robot(LINK.format('a', '').replace('value="1"', 'value="nan"')), ['nan']),
     'negative mass': (robot(LINK.format('a', '').replace('value="1"', 'value="-1"')), ['-1']),
 }
@@ -48,10 +56,14 @@ CALL_ERRORS = {
     'nothing': ('', 'entity format is invalid'),
     'sdf': ('<sdf version="1.6"><model name="m"/></sdf>', 'entity format is invalid'),
     'unknown package': (
-        robot(LINK.format('a', MESH.format('package://no_such_pkg/m.dae'))), 'no_such_pkg'),
+        robot(LINK.format('a', MESH.format('package://no_such_pkg/m.dae'))),
+        'no_such_pkg',
+    ),
 }
-UNKNOWN_JOINT = ('<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
-                 '<leftJoint>nojoint</leftJoint></plugin></gazebo>')
+UNKNOWN_JOINT = (
+    '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
+    '<leftJoint>nojoint</leftJoint></plugin></gazebo>'
+)
 
 
 class BadInputTest(SimulatorTest):
@@ -100,9 +112,13 @@ class BadInputTest(SimulatorTest):
         self._assert_neighbour_drives()
 
     def test_irregular_models_accepted_by_gazebo_are_spawned(self):
-        massless = ''.join((
-            LINK.format('base', ''), '<link name="ghost"/>',
-            '<joint name="j" type="continuous"><parent link="base"/><child link="ghost"/></joint>'))
+        massless = ''.join(
+            (
+                LINK.format('base', ''),
+                '<link name="ghost"/>',
+                '<joint name="j" type="continuous"><parent link="base"/><child link="ghost"/></joint>',
+            )
+        )
         self.assertTrue(self.spawn('half', robot(massless), pose(x=5.0)).success)
         properties = proxy('get_model_properties', GetModelProperties)('half')
         self.assertEqual((properties.body_names, properties.joint_names), (['base'], []))
@@ -115,9 +131,13 @@ class BadInputTest(SimulatorTest):
         link_state = proxy('get_link_state', GetLinkState)
         for name in ('base_link', 'neighbour::base_link', 'caster'):
             response = link_state(name, '')
-            self.assertEqual((response.success, response.status_message), (
-                False, 'GetLinkState: link not found, did you forget to scope the link by model '
-                'name?'))
+            self.assertEqual(
+                (response.success, response.status_message),
+                (
+                    False,
+                    'GetLinkState: link not found, did you forget to scope the link by model name?',
+                ),
+            )
         self.assertTrue(link_state('neighbour::base_footprint', '').success)
 
     def test_empty_name_and_invalid_pose(self):
@@ -129,8 +149,9 @@ class BadInputTest(SimulatorTest):
     def test_model_is_spawned_without_a_failing_plugin(self):
         xml = BOX.replace('</robot>', UNKNOWN_JOINT + '</robot>')
         self.assertTrue(self.spawn('bad', xml).success)
-        unknown = BOX.replace('</robot>', '<gazebo><plugin name="n" filename="libnope.so"/>'
-                                          '</gazebo></robot>')
+        unknown = BOX.replace(
+            '</robot>', '<gazebo><plugin name="n" filename="libnope.so"/></gazebo></robot>'
+        )
         self.assertTrue(self.spawn('worse', unknown, pose(x=5.0)).success)
         self._assert_neighbour_drives()
 

@@ -24,17 +24,22 @@ def name_of(pid):
 
 
 class BenchmarksTest(unittest.TestCase):
-
     def test_sigterm_ends_all_processes_of_the_soak_test(self):
         path = os.pathsep.join([str(ROOT / 'test'), os.environ['PYTHONPATH']])
         process = subprocess.Popen(
             [sys.executable, ROOT / 'benchmark' / 'run.py', 'soak', '--seconds', '600'],
-            env=os.environ | {'PYTHONPATH': path}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True)
+            env=os.environ | {'PYTHONPATH': path},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         self.addCleanup(process.kill)
         self.assertEqual(process.stdout.readline(), '== soak, about 26 min\n')
-        wait_until(lambda: 'gzserver' in map(name_of, descendants(process.pid)), 'a simulator',
-                   2 * DEADLINE)
+        wait_until(
+            lambda: 'gzserver' in map(name_of, descendants(process.pid)),
+            'a simulator',
+            2 * DEADLINE,
+        )
         family = descendants(process.pid)
         process.send_signal(signal.SIGTERM)
         printed, _ = process.communicate(timeout=DEADLINE)

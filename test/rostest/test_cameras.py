@@ -21,7 +21,6 @@ SETTINGS = ('parameter_descriptions', 'parameter_updates')
 
 
 class CameraTest(SimulatorTest):
-
     def spawn_recorded(self, robot, folder, topics, namespace='/', plugin=None):
         """Spawn a recorded robot and assert that its topics below `folder` are `topics`."""
         before = topics_of()
@@ -42,7 +41,8 @@ class CameraTest(SimulatorTest):
 
     def test_images_and_camera_infos_have_equal_stamps(self):
         self.spawn_recorded(
-            'camera_320', '/nsx/camera1', {*IMAGES, 'camera_info', *SETTINGS}, '/nsx')
+            'camera_320', '/nsx/camera1', {*IMAGES, 'camera_info', *SETTINGS}, '/nsx'
+        )
         infos = self.collect('/nsx/camera1/camera_info', CameraInfo)
         images = self.read('/nsx/camera1/image_raw', Image, 12)
         image = images[-1]
@@ -50,16 +50,22 @@ class CameraTest(SimulatorTest):
         self.assertEqual((image.encoding, len(image.data)), ('rgb8', 230400))
         self.assertEqual(image.header.frame_id, 'camera_link_optical')
         self.assertEqual(tuple(image.data[:3]), (178, 178, 178))  # the background
-        wait_until(lambda: images[5].header.stamp in {one.header.stamp for one in list(infos)},
-                   'the camera info of an image')
+        wait_until(
+            lambda: images[5].header.stamp in {one.header.stamp for one in list(infos)},
+            'the camera info of an image',
+        )
         # On a busy machine, late images are left out.
         self.assertLessEqual(min(spacing(images)), 34)
         self.assertAlmostEqual(infos[-1].P[3], -13.347686, 5)
 
     def test_readers_that_keep_up_get_each_picture(self):
         """Rospy numbers the messages that are published; the engine's tests count the pictures."""
-        text = re.sub('<width>.*?</height>', '<width>800</width><height>800</height>',
-                      (ROBOTS / 'camera_320.urdf').read_text(encoding='utf-8'), flags=re.DOTALL)
+        text = re.sub(
+            '<width>.*?</height>',
+            '<width>800</width><height>800</height>',
+            (ROBOTS / 'camera_320.urdf').read_text(encoding='utf-8'),
+            flags=re.DOTALL,
+        )
         self.assertTrue(self.spawn('bot', text, pose(z=0.0)).success)
         client = Client('/camera1', timeout=DEADLINE)
         client.update_configuration({'imager_rate': 5.0})  # any machine keeps up with it
@@ -73,19 +79,24 @@ class CameraTest(SimulatorTest):
             self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))))
         stamps = [[message.header.stamp for message in found] for found in (images, compressed)]
         both = max(found[0] for found in stamps), min(found[-1] for found in stamps)
-        self.assertEqual(*([stamp for stamp in found if both[0] <= stamp <= both[1]]
-                           for found in stamps))
+        self.assertEqual(
+            *([stamp for stamp in found if both[0] <= stamp <= both[1]] for found in stamps)
+        )
 
     def test_compressed_image_is_the_image(self):
         self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         compressed = self.read('/camera1/image_raw/compressed', CompressedImage, 2)
         images = self.collect('/camera1/image_raw', Image)
-        wait_until(lambda: images and compressed[-1].header.stamp >= images[0].header.stamp,
-                   'both images of one time')
+        wait_until(
+            lambda: images and compressed[-1].header.stamp >= images[0].header.stamp,
+            'both images of one time',
+        )
         image = images[0]
-        same, = (one for one in compressed if one.header.stamp == image.header.stamp)
-        self.assertEqual((same.format, same.header.frame_id),
-                         ('rgb8; jpeg compressed bgr8', 'camera_link_optical'))
+        (same,) = (one for one in compressed if one.header.stamp == image.header.stamp)
+        self.assertEqual(
+            (same.format, same.header.frame_id),
+            ('rgb8; jpeg compressed bgr8', 'camera_link_optical'),
+        )
         pixels = np.asarray(PilImage.open(io.BytesIO(same.data)), int)
         away = np.abs(pixels - np.frombuffer(image.data, 'u1').reshape(240, 320, 3))
         self.assertLess(away.mean(), 1.0)
@@ -114,8 +125,11 @@ class CameraTest(SimulatorTest):
 
     def test_each_trigger_gives_one_image(self):
         self.spawn_recorded(
-            'camera_320', '/camera1', {*IMAGES, 'camera_info', 'image_trigger', *SETTINGS},
-            plugin='libgazebo_ros_triggered_camera.so')
+            'camera_320',
+            '/camera1',
+            {*IMAGES, 'camera_info', 'image_trigger', *SETTINGS},
+            plugin='libgazebo_ros_triggered_camera.so',
+        )
         images = self.collect('/camera1/image_raw', Image)
         trigger = rospy.Publisher('/camera1/image_trigger', Empty, queue_size=1)
         self.addCleanup(trigger.unregister)
@@ -130,22 +144,37 @@ class CameraTest(SimulatorTest):
         self.assertEqual(len(images), before + 1)
 
     def test_both_cameras_of_a_multicamera_have_equal_stamps(self):
-        topics = {f'{side}/{topic}' for side in ('left', 'right')
-                  for topic in (*IMAGES, 'camera_info', *SETTINGS)}
+        topics = {
+            f'{side}/{topic}'
+            for side in ('left', 'right')
+            for topic in (*IMAGES, 'camera_info', *SETTINGS)
+        }
         self.spawn_recorded('multicamera', '/multisense', topics)
         left = self.collect('/multisense/left/image_raw', Image)
         right = self.read('/multisense/right/image_raw', Image, 5)
-        wait_until(lambda: {m.header.stamp for m in left} & {m.header.stamp for m in right},
-                   'equal stamps')
+        wait_until(
+            lambda: {m.header.stamp for m in left} & {m.header.stamp for m in right}, 'equal stamps'
+        )
 
     def test_depth_camera_publishes_all_its_topics(self):
-        self.spawn_recorded('openni_kinect', '/camera', {
-            'rgb/image_raw', 'rgb/image_raw/compressed', 'rgb/camera_info', 'depth/image_raw',
-            'depth/camera_info', 'depth/points', *SETTINGS})
+        self.spawn_recorded(
+            'openni_kinect',
+            '/camera',
+            {
+                'rgb/image_raw',
+                'rgb/image_raw/compressed',
+                'rgb/camera_info',
+                'depth/image_raw',
+                'depth/camera_info',
+                'depth/points',
+                *SETTINGS,
+            },
+        )
         cloud = self.read('/camera/depth/points', PointCloud2, 2)[-1]
         self.assertEqual((cloud.height, cloud.width, cloud.point_step), (240, 320, 32))
-        self.assertEqual([(f.name, f.offset) for f in cloud.fields],
-                         [('x', 0), ('y', 4), ('z', 8), ('rgb', 16)])
+        self.assertEqual(
+            [(f.name, f.offset) for f in cloud.fields], [('x', 0), ('y', 4), ('z', 8), ('rgb', 16)]
+        )
         self.assertFalse(cloud.is_dense)
         image = self.read('/camera/depth/image_raw', Image, 2)[-1]
         self.assertEqual((image.encoding, image.step), ('32FC1', 1280))

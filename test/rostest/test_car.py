@@ -18,7 +18,6 @@ NEAR = 0.05  # [m] of the odometry to the truth
 
 
 class CarTest(unittest.TestCase):
-
     def test_car_drives_an_arc_and_knows_where_it_is(self):
         heard = {}
         rospy.Subscriber('/car/drive/odom', Odometry, lambda m: heard.update(odom=m))
@@ -40,8 +39,9 @@ class CarTest(unittest.TestCase):
         self.assertGreater(angles['front_right_steering'], 0.1)
         self.assertLess(angles['rear_left_steering'], -0.1)
         wait_until(lambda: abs(heard['odom'].twist.twist.linear.x) < 1e-3, 'a stop')
-        true, found = (one.position for one in (
-            model_state('car', 'world').pose, heard['odom'].pose.pose))
+        true, found = (
+            one.position for one in (model_state('car', 'world').pose, heard['odom'].pose.pose)
+        )
         self.assertGreater(math.hypot(true.x, true.y), 0.5)
         self.assertLess(math.dist((true.x, true.y), (found.x, found.y)), NEAR)
 

@@ -43,44 +43,72 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 from support.cars import SIDES, car
 
 # With a flap that follows the steering, an IMU, and a sensor of forces at the flap.
-CAR = car(*[[side for side, _, _ in SIDES]] * 2).replace(
-    'filename="libgazebo_ros_control.so"/>',
-    'filename="libgazebo_ros_control.so"><robotNamespace>/car</robotNamespace></plugin>'
-    '<plugin name="mimic" filename="libroboticsgroup_gazebo_mimic_joint_plugin.so">'
-    '<robotNamespace>/car</robotNamespace><joint>front_left_steer</joint>'
-    '<mimicJoint>flap</mimicJoint><hasPID/></plugin>'
-    '<plugin name="wrist" filename="libgazebo_ros_ft_sensor.so"><jointName>flap</jointName>'
-    '<topicName>of_plugin</topicName></plugin>').replace('</robot>', '''
+CAR = (
+    car(*[[side for side, _, _ in SIDES]] * 2)
+    .replace(
+        'filename="libgazebo_ros_control.so"/>',
+        'filename="libgazebo_ros_control.so"><robotNamespace>/car</robotNamespace></plugin>'
+        '<plugin name="mimic" filename="libroboticsgroup_gazebo_mimic_joint_plugin.so">'
+        '<robotNamespace>/car</robotNamespace><joint>front_left_steer</joint>'
+        '<mimicJoint>flap</mimicJoint><hasPID/></plugin>'
+        '<plugin name="wrist" filename="libgazebo_ros_ft_sensor.so"><jointName>flap</jointName>'
+        '<topicName>of_plugin</topicName></plugin>',
+    )
+    .replace(
+        '</robot>',
+        """
   <link name="flap_link"><inertial><mass value="0.5"/>
     <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
   <joint name="flap" type="revolute"><parent link="base_link"/><child link="flap_link"/>
     <origin xyz="0 0 0.1"/><axis xyz="0 0 1"/><dynamics damping="0.1"/>
     <limit lower="-1" upper="1" effort="20" velocity="20"/></joint>
   <gazebo reference="base_link"><sensor name="imu" type="imu"><update_rate>100</update_rate>
-  </sensor></gazebo></robot>''')
-WHEELS, STEERINGS = ([f'{place}_{side}_{kind}' for place in ('front', 'rear')
-                      for side in ('left', 'right')] for kind in ('joint', 'steer'))
-DRIVE = {'pose_covariance_diagonal': [1.0] * 6, 'twist_covariance_diagonal': [1.0] * 6,
-         'cmd_vel_timeout': 600.0}
+  </sensor></gazebo></robot>""",
+    )
+)
+WHEELS, STEERINGS = (
+    [f'{place}_{side}_{kind}' for place in ('front', 'rear') for side in ('left', 'right')]
+    for kind in ('joint', 'steer')
+)
+DRIVE = {
+    'pose_covariance_diagonal': [1.0] * 6,
+    'twist_covariance_diagonal': [1.0] * 6,
+    'cmd_vel_timeout': 600.0,
+}
 CAR_CONTROLLERS = {
-    'four': {'type': 'four_wheel_steering_controller/FourWheelSteeringController',
-             'front_wheel': WHEELS[:2], 'rear_wheel': WHEELS[2:],
-             'front_steering': STEERINGS[:2], 'rear_steering': STEERINGS[2:], **DRIVE},
-    'mecanum': {'type': 'mecanum_drive_controller/MecanumDriveController',
-                'front_left_wheel_joint': WHEELS[0], 'front_right_wheel_joint': WHEELS[1],
-                'back_left_wheel_joint': WHEELS[2], 'back_right_wheel_joint': WHEELS[3],
-                **DRIVE},
-    'bicycle': {'type': 'ackermann_steering_controller/AckermannSteeringController',
-                'rear_wheel': WHEELS[2], 'front_steer': STEERINGS[0],
-                'wheel_separation_h': 0.3, **DRIVE},
+    'four': {
+        'type': 'four_wheel_steering_controller/FourWheelSteeringController',
+        'front_wheel': WHEELS[:2],
+        'rear_wheel': WHEELS[2:],
+        'front_steering': STEERINGS[:2],
+        'rear_steering': STEERINGS[2:],
+        **DRIVE,
+    },
+    'mecanum': {
+        'type': 'mecanum_drive_controller/MecanumDriveController',
+        'front_left_wheel_joint': WHEELS[0],
+        'front_right_wheel_joint': WHEELS[1],
+        'back_left_wheel_joint': WHEELS[2],
+        'back_right_wheel_joint': WHEELS[3],
+        **DRIVE,
+    },
+    'bicycle': {
+        'type': 'ackermann_steering_controller/AckermannSteeringController',
+        'rear_wheel': WHEELS[2],
+        'front_steer': STEERINGS[0],
+        'wheel_separation_h': 0.3,
+        **DRIVE,
+    },
     'imus': {'type': 'imu_sensor_controller/ImuSensorController', 'publish_rate': 50},
-    'wrenches': {'type': 'force_torque_sensor_controller/ForceTorqueSensorController',
-                 'publish_rate': 50}}
+    'wrenches': {
+        'type': 'force_torque_sensor_controller/ForceTorqueSensorController',
+        'publish_rate': 50,
+    },
+}
 GAINS = 'gazebo_ros_control/pid_gains/flap'  # of the plugin that moves the flap
 
 
 class ControllerTopicsTest(ControllersTest):
-
     def test_names_and_types_are_those_of_the_recordings(self):
         for scenario, recorded in RECORDED.items():
             with self.subTest(scenario):
@@ -95,12 +123,19 @@ class ControllerTopicsTest(ControllersTest):
         before = graph()
         if interface:
             self.spawn_robot(
-                ARM.replace('EffortJointInterface', interface), '/arm',
-                {**controllers, 'gazebo_ros_control/pid_gains': recorded['pid_gains']})
+                ARM.replace('EffortJointInterface', interface),
+                '/arm',
+                {**controllers, 'gazebo_ros_control/pid_gains': recorded['pid_gains']},
+            )
         else:
             self.spawn_robot(BURGER, '', controllers)
-        wait_until(lambda: len(added(before)['services']) >= len(
-            (recorded['by_plugin'] or {}).get('services', MANAGER)), 'all services')
+        wait_until(
+            lambda: (
+                len(added(before)['services'])
+                >= len((recorded['by_plugin'] or {}).get('services', MANAGER))
+            ),
+            'all services',
+        )
         if recorded['by_plugin']:
             self.assertEqual(added(before), recorded['by_plugin'])
         idle = graph()
@@ -135,15 +170,21 @@ class ControllerTopicsTest(ControllersTest):
             topic = '/car/' + name
             odometry = self.collect(topic.rpartition('/')[0] + '/odom', Odometry)
             self.publisher(topic, kind).publish(message)
-            wait_until(lambda: odometry and abs(speed(odometry[-1].twist.twist) - 0.2) < 0.005,
-                       f'the speed by {topic}')
+            wait_until(
+                lambda: odometry and abs(speed(odometry[-1].twist.twist) - 0.2) < 0.005,
+                f'the speed by {topic}',
+            )
 
-        drives('four/cmd_four_wheel_steering', FourWheelSteering,
-               FourWheelSteering(speed=0.2, front_steering_angle=0.5, rear_steering_angle=-0.5),
-               lambda twist: twist.linear.x)
+        drives(
+            'four/cmd_four_wheel_steering',
+            FourWheelSteering,
+            FourWheelSteering(speed=0.2, front_steering_angle=0.5, rear_steering_angle=-0.5),
+            lambda twist: twist.linear.x,
+        )
         steered = self.collect('/car/four/odom_steer', FourWheelSteeringStamped)
-        wait_until(lambda: steered and abs(
-            steered[-1].data.front_steering_angle - 0.5) < 0.01, 'the angle')
+        wait_until(
+            lambda: steered and abs(steered[-1].data.front_steering_angle - 0.5) < 0.01, 'the angle'
+        )
         self.assertGreater(angle('front_left_steer'), 0.5)
         # Its gains let the flap follow the steering.
         self.assertGreater(abs(angle('flap') - angle('front_left_steer')), 0.1)
@@ -154,11 +195,16 @@ class ControllerTopicsTest(ControllersTest):
         self.assertTrue(self.switch(start=['mecanum'], stop=['four']), self.errors)
         drives('mecanum/cmd_vel', Twist, Twist(linear=Vector3(y=0.2)), lambda twist: twist.linear.y)
         self.assertTrue(self.switch(start=['bicycle'], stop=['mecanum']), self.errors)
-        drives('bicycle/cmd_vel', Twist, Twist(linear=Vector3(x=0.2), angular=Vector3(z=0.3)),
-               lambda twist: twist.linear.x)
+        drives(
+            'bicycle/cmd_vel',
+            Twist,
+            Twist(linear=Vector3(x=0.2), angular=Vector3(z=0.3)),
+            lambda twist: twist.linear.x,
+        )
         wait_until(lambda: abs(angle('front_left_steer') - 0.3) < 0.01, 'the steering')
-        self.assertEqual((imus[-1].header.frame_id, wrenches[-1].header.frame_id),
-                         ('base_link', 'flap_link'))
+        self.assertEqual(
+            (imus[-1].header.frame_id, wrenches[-1].header.frame_id), ('base_link', 'flap_link')
+        )
         self.assertEqual((periods(imus), periods(wrenches)), ({0.02}, {0.02}))
         self.assertTrue(any(abs(one.linear_acceleration.z - 9.8) < 0.5 for one in imus))
         self.assertTrue(any(abs(abs(one.wrench.force.z) - 4.9) < 0.5 for one in wrenches))
@@ -166,24 +212,35 @@ class ControllerTopicsTest(ControllersTest):
     def _check_car_topics(self, before):
         odometry, commands = (
             {f'/car/{name}/{topic}': kind for name in ('four', 'mecanum', 'bicycle')}
-            for topic, kind in (('odom', 'nav_msgs/Odometry'), ('cmd_vel', 'geometry_msgs/Twist')))
+            for topic, kind in (('odom', 'nav_msgs/Odometry'), ('cmd_vel', 'geometry_msgs/Twist'))
+        )
         steering = 'four_wheel_steering_msgs/FourWheelSteering'
-        self.assertEqual(added(before), {
-            'publishes': {**odometry, '/car/four/odom_steer': f'{steering}Stamped',
-                          '/tf': 'tf2_msgs/TFMessage', '/car/imu': 'sensor_msgs/Imu',
-                          '/car/wrist': 'geometry_msgs/WrenchStamped'},
-            'subscribes': {**commands, '/car/four/cmd_four_wheel_steering': steering},
-            'services': {}})
+        self.assertEqual(
+            added(before),
+            {
+                'publishes': {
+                    **odometry,
+                    '/car/four/odom_steer': f'{steering}Stamped',
+                    '/tf': 'tf2_msgs/TFMessage',
+                    '/car/imu': 'sensor_msgs/Imu',
+                    '/car/wrist': 'geometry_msgs/WrenchStamped',
+                },
+                'subscribes': {**commands, '/car/four/cmd_four_wheel_steering': steering},
+                'services': {},
+            },
+        )
 
     def test_goals_are_followed_violated_rejected_and_canceled(self):
         recorded = RECORDED['jtc_position']['parameters']
-        self.spawn_robot(ARM.replace('EffortJointInterface', 'PositionJointInterface'),
-                         parameters=recorded)
+        self.spawn_robot(
+            ARM.replace('EffortJointInterface', 'PositionJointInterface'), parameters=recorded
+        )
         for name in recorded:
             self.assertTrue(self.load(name))
         self.assertTrue(self.switch(start=recorded))
         client = actionlib.SimpleActionClient(
-            '/arm/arm_controller/follow_joint_trajectory', FollowJointTrajectoryAction)
+            '/arm/arm_controller/follow_joint_trajectory', FollowJointTrajectoryAction
+        )
         self.assertTrue(client.wait_for_server(rospy.Duration(DEADLINE)))
         feedback = []
 
@@ -191,8 +248,9 @@ class ControllerTopicsTest(ControllersTest):
             goal = FollowJointTrajectoryGoal()
             goal.trajectory.header.stamp = rospy.Time.from_sec(start)
             goal.trajectory.joint_names = list(names)
-            goal.trajectory.points = [JointTrajectoryPoint(
-                positions=positions, time_from_start=rospy.Duration(seconds))]
+            goal.trajectory.points = [
+                JointTrajectoryPoint(positions=positions, time_from_start=rospy.Duration(seconds))
+            ]
             client.send_goal(goal, feedback_cb=feedback.append)
             if wait:
                 wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, 'result')
@@ -208,9 +266,13 @@ class ControllerTopicsTest(ControllersTest):
         state, code, text = follow(0.001, [0.0, 0.0], start=0.001)
         self.assertEqual((state, code), (GoalStatus.REJECTED, -1))
         self.assertRegex(text, rf'^{re.escape(past)}\nLast point is \d+\.\d{{6}}s in the past\.$')
-        self.publisher('/arm/arm_controller/command', JointTrajectory).publish(JointTrajectory(
-            Header(stamp=rospy.Time.from_sec(0.001)), ['joint1', 'joint2'],
-            [JointTrajectoryPoint(positions=[0.0, 0.0])]))
+        self.publisher('/arm/arm_controller/command', JointTrajectory).publish(
+            JointTrajectory(
+                Header(stamp=rospy.Time.from_sec(0.001)),
+                ['joint1', 'joint2'],
+                [JointTrajectoryPoint(positions=[0.0, 0.0])],
+            )
+        )
         self.heard_errors(past)
         follow(30.0, [0.0, 0.0], wait=False)
         wait_until(lambda: client.get_state() == GoalStatus.ACTIVE, 'the goal to be accepted')
@@ -225,9 +287,10 @@ class ControllerTopicsTest(ControllersTest):
 
     def test_gains_are_changed_and_the_emergency_stop_takes_the_effort(self):
         parameters = RECORDED['effort_pos']['parameters']
-        self.spawn_robot(ARM.replace('</robotNamespace>',
-                                     '</robotNamespace><eStopTopic>stop</eStopTopic>'),
-                         parameters=parameters)
+        self.spawn_robot(
+            ARM.replace('</robotNamespace>', '</robotNamespace><eStopTopic>stop</eStopTopic>'),
+            parameters=parameters,
+        )
         for name in parameters:
             self.assertTrue(self.load(name))
         self.assertTrue(self.switch(start=parameters))
@@ -248,8 +311,11 @@ class ControllerTopicsTest(ControllersTest):
     def test_a_controller_of_a_users_package_is_loaded_by_its_type(self):
         self.spawn_robot(
             ARM.replace('EffortJointInterface', 'PositionJointInterface'),
-            parameters={JSC: RECORDED['effort_pos']['parameters'][JSC],
-                        'swing': {'type': 'my_robot/Swing', 'joint': 'joint2'}})
+            parameters={
+                JSC: RECORDED['effort_pos']['parameters'][JSC],
+                'swing': {'type': 'my_robot/Swing', 'joint': 'joint2'},
+            },
+        )
         for name in (JSC, 'swing'):
             self.assertTrue(self.load(name), self.errors)
         self.assertTrue(self.switch(start=[JSC, 'swing']))
@@ -257,8 +323,10 @@ class ControllerTopicsTest(ControllersTest):
 
         def swings_about(centre):
             angles = [one.position[1] for one in states[-25:]]
-            return len(angles) == 25 and max(
-                abs(max(angles) - centre - 0.1), abs(min(angles) - centre + 0.1)) < 0.02
+            return (
+                len(angles) == 25
+                and max(abs(max(angles) - centre - 0.1), abs(min(angles) - centre + 0.1)) < 0.02
+            )
 
         wait_until(lambda: swings_about(0.0), 'the swing')
         self.publisher('/arm/swing/command', Float64).publish(0.5)
@@ -276,11 +344,14 @@ class ControllerTopicsTest(ControllersTest):
         command.linear.x, command.angular.z = 0.2, 0.5
         publisher = self.publisher('/diff_cont/cmd_vel', Twist)
         publisher.publish(command)
-        wait_until(lambda: any(abs(one.twist.twist.linear.x - 0.2) < 0.002
-                               for one in list(odometry)), 'the speed')
+        wait_until(
+            lambda: any(abs(one.twist.twist.linear.x - 0.2) < 0.002 for one in list(odometry)),
+            'the speed',
+        )
         driving = odometry[-1]
-        self.assertEqual((driving.header.frame_id, driving.child_frame_id),
-                         ('odom', 'base_footprint'))
+        self.assertEqual(
+            (driving.header.frame_id, driving.child_frame_id), ('odom', 'base_footprint')
+        )
         self.assertEqual(driving.pose.covariance[35], 1000.0)
         # Without further commands it stops after cmd_vel_timeout.
         wait_until(lambda: abs(odometry[-1].twist.twist.linear.x) < 0.01, 'the time-out')
@@ -295,9 +366,15 @@ class ControllerTopicsTest(ControllersTest):
 
 
 def as_dict(state):
-    return {'name': state.name, 'state': state.state, 'type': state.type, 'claimed_resources': [
-        {'hardware_interface': claim.hardware_interface, 'resources': claim.resources}
-        for claim in state.claimed_resources]}
+    return {
+        'name': state.name,
+        'state': state.state,
+        'type': state.type,
+        'claimed_resources': [
+            {'hardware_interface': claim.hardware_interface, 'resources': claim.resources}
+            for claim in state.claimed_resources
+        ],
+    }
 
 
 if __name__ == '__main__':

@@ -33,20 +33,26 @@ LAUNCH = DATA / 'controllers' / 'arm_control.launch'
 
 
 class ManagersTest(ControllersTest):
-
     def test_launch_file_starts_controllers_and_ctrl_c_unloads_them(self):
         self.spawn_robot()
-        launch = subprocess.Popen(['roslaunch', str(LAUNCH)], stdout=subprocess.PIPE,
-                                  stderr=subprocess.STDOUT, text=True)
+        launch = subprocess.Popen(
+            ['roslaunch', str(LAUNCH)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
         try:
             wait_until(lambda: set(self.states().values()) == {'running'}, 'the controllers')
             states = self.collect('/arm/joint_states', JointState)
             reports = self.collect('/arm/joint1_position_controller/state', JointControllerState)
             self.publisher('/arm/joint1_position_controller/command', Float64).publish(0.3)
             # As recorded, gravity leaves an error of command / p.
-            wait_until(lambda: reports and reports[-1].set_point == 0.3 and abs(
-                reports[-1].process_value_dot) < 1e-4 and reports[-1].process_value > 0.25,
-                'the joint to rest')
+            wait_until(
+                lambda: (
+                    reports
+                    and reports[-1].set_point == 0.3
+                    and abs(reports[-1].process_value_dot) < 1e-4
+                    and reports[-1].process_value > 0.25
+                ),
+                'the joint to rest',
+            )
             last = reports[-1]
             self.assertAlmostEqual(last.command, 100.0 * last.error, delta=0.01)
             self.assertEqual((last.p, last.i, last.d, last.i_clamp), (100.0, 0.01, 10.0, 0.0))
@@ -58,70 +64,112 @@ class ManagersTest(ControllersTest):
             launch.send_signal(signal.SIGINT)
             output = launch.communicate(timeout=DEADLINE)[0]
         self.assertEqual(self.states(), {})
-        for line in ('Controller Spawner: Waiting for service controller_manager/load_controller',
-                     'Loading controller: joint_state_controller',
-                     'Started controllers: joint_state_controller, joint1_position_controller',
-                     'Shutting down spawner. Stopping and unloading controllers...',
-                     'Succeeded in unloading joint_state_controller'):
+        for line in (
+            'Controller Spawner: Waiting for service controller_manager/load_controller',
+            'Loading controller: joint_state_controller',
+            'Started controllers: joint_state_controller, joint1_position_controller',
+            'Shutting down spawner. Stopping and unloading controllers...',
+            'Succeeded in unloading joint_state_controller',
+        ):
             self.assertIn(line, output)
 
     def _check_programs(self):
         """The commands of controller_manager, beside running controllers."""
         for command, expected in (
-                ('list', "'joint1_position_controller' - 'hardware_interface::EffortJointInterface'"
-                         ' ( running )'),
-                ('stop joint2_position_controller',
-                 "Stopped ['joint2_position_controller'] successfully"),
-                ('start joint2_position_controller nope',
-                 "Started ['joint2_position_controller'] successfully\n"
-                 "Error when starting ['nope'] and stopping []")):
+            (
+                'list',
+                "'joint1_position_controller' - 'hardware_interface::EffortJointInterface'"
+                ' ( running )',
+            ),
+            (
+                'stop joint2_position_controller',
+                "Stopped ['joint2_position_controller'] successfully",
+            ),
+            (
+                'start joint2_position_controller nope',
+                "Started ['joint2_position_controller'] successfully\n"
+                "Error when starting ['nope'] and stopping []",
+            ),
+        ):
             self.assertIn(expected, said_by(self.start('controller_manager', *command.split())))
 
     def test_programs_load_stop_and_unload_controllers(self):
         one, two = (f'joint{number}_position_controller' for number in (1, 2))
-        self.spawn_robot(parameters={
-            **RECORDED['effort_pos']['parameters'],
-            'controller_groups': {'first': [JSC, one], 'second': [JSC, two, two]}})
-        readers = [self.start(f'controller_{which}', command) for which, command in (
-            ('manager', 'list-types'), ('group', 'list'))]
+        self.spawn_robot(
+            parameters={
+                **RECORDED['effort_pos']['parameters'],
+                'controller_groups': {'first': [JSC, one], 'second': [JSC, two, two]},
+            }
+        )
+        readers = [
+            self.start(f'controller_{which}', command)
+            for which, command in (('manager', 'list-types'), ('group', 'list'))
+        ]
         for which, command, said, states in (
-                ('manager', f'load {one} nope',
-                 f"Loaded '{one}'\nError when loading 'nope'", {one: 'initialized'}),
-                ('manager', f'spawn {two}',
-                 f"Loaded '{two}'\nStarted ['{two}'] successfully",
-                 {one: 'initialized', two: 'running'}),
-                ('manager', 'reload-libraries --restore',
-                 'Restore: True\nSuccessfully reloaded libraries\n'
-                 'Controllers restored to original state',
-                 {one: 'initialized', two: 'running'}),
-                ('manager', f'kill {two} {one}',
-                 f"Stopped ['{two}'] successfully\nError when starting [] and stopping ['{one}']\n"
-                 f"Unloaded '{two}' successfully\nUnloaded '{one}' successfully", {}),
-                ('group', 'spawn first', f"Started ['{one}'] successfully",
-                 {JSC: 'running', one: 'running'}),
-                ('group', 'switch second', f"Loaded '{two}'\nStarted ['{two}'] successfully\n"
-                 f"Stopped ['{one}'] successfully",
-                 {JSC: 'running', one: 'stopped', two: 'running'})):
+            (
+                'manager',
+                f'load {one} nope',
+                f"Loaded '{one}'\nError when loading 'nope'",
+                {one: 'initialized'},
+            ),
+            (
+                'manager',
+                f'spawn {two}',
+                f"Loaded '{two}'\nStarted ['{two}'] successfully",
+                {one: 'initialized', two: 'running'},
+            ),
+            (
+                'manager',
+                'reload-libraries --restore',
+                'Restore: True\nSuccessfully reloaded libraries\n'
+                'Controllers restored to original state',
+                {one: 'initialized', two: 'running'},
+            ),
+            (
+                'manager',
+                f'kill {two} {one}',
+                f"Stopped ['{two}'] successfully\nError when starting [] and stopping ['{one}']\n"
+                f"Unloaded '{two}' successfully\nUnloaded '{one}' successfully",
+                {},
+            ),
+            (
+                'group',
+                'spawn first',
+                f"Started ['{one}'] successfully",
+                {JSC: 'running', one: 'running'},
+            ),
+            (
+                'group',
+                'switch second',
+                f"Loaded '{two}'\nStarted ['{two}'] successfully\nStopped ['{one}'] successfully",
+                {JSC: 'running', one: 'stopped', two: 'running'},
+            ),
+        ):
             with self.subTest(which, command=command):
                 self.assertIn(said, said_by(self.start(f'controller_{which}', *command.split())))
                 self.assertEqual(self.states(), states)
         types, groups = map(said_by, readers)
         self.assertLessEqual(set(RECORDED['effort_pos']['types']), set(types.splitlines()))
-        self.assertIn(f'Number of groups: 2\n  first\n      {JSC}\n      {one}\n  second\n',
-                      groups)
+        self.assertIn(f'Number of groups: 2\n  first\n      {JSC}\n      {one}\n  second\n', groups)
 
     def test_libraries_are_reloaded_only_without_controllers_unless_forced(self):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
         self.assertTrue(self.load(JSC))
         self.assertTrue(self.switch(start=[JSC]))
-        self.assertFalse(self.call('reload_controller_libraries', ReloadControllerLibraries,
-                                   force_kill=False).ok)
+        self.assertFalse(
+            self.call('reload_controller_libraries', ReloadControllerLibraries, force_kill=False).ok
+        )
         self.assertEqual(self.states(), {JSC: 'running'})
-        self.heard_errors('Controller manager: Cannot reload controller libraries because there '
-                          'are still 1 controllers running')
+        self.heard_errors(
+            'Controller manager: Cannot reload controller libraries because there '
+            'are still 1 controllers running'
+        )
         for force_kill in (True, False):
-            self.assertTrue(self.call('reload_controller_libraries', ReloadControllerLibraries,
-                                      force_kill=force_kill).ok)
+            self.assertTrue(
+                self.call(
+                    'reload_controller_libraries', ReloadControllerLibraries, force_kill=force_kill
+                ).ok
+            )
             self.assertEqual(self.states(), {})
 
     def test_unspawner_keeps_controllers_stopped_until_it_ends(self):
@@ -158,23 +206,36 @@ class ManagersTest(ControllersTest):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
         spawner = subprocess.Popen(
             ['rosrun', 'controller_manager', 'spawner', '--namespace', '/arm', 'nope', JSC],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         wait_until(lambda: self.states() == {JSC: 'running'}, 'the other controller')
         spawner.send_signal(signal.SIGINT)
         output = spawner.communicate(timeout=DEADLINE)[0]
         self.assertEqual(spawner.returncode, 0)
         self.assertIn('Failed to load nope', output)
         self.assertEqual(self.states(), {})
-        self.heard_errors("Could not load controller 'nope' because the type was not specified. "
-                          'Did you load the controller configuration on the parameter server '
-                          "(namespace: '/arm/nope')?")
+        self.heard_errors(
+            "Could not load controller 'nope' because the type was not specified. "
+            'Did you load the controller configuration on the parameter server '
+            "(namespace: '/arm/nope')?"
+        )
 
     def test_bad_input_is_answered_as_upstream_and_the_world_goes_on(self):
         good = RECORDED['effort_pos']['parameters']
-        self.spawn_robot(parameters={
-            **good, 'wrong': {'type': 'no_such/Controller'}, 'list': [1, 2],
-            'jointless': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint9'},
-            'rival': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint1'}})
+        self.spawn_robot(
+            parameters={
+                **good,
+                'wrong': {'type': 'no_such/Controller'},
+                'list': [1, 2],
+                'jointless': {
+                    'type': 'effort_controllers/JointEffortController',
+                    'joint': 'joint9',
+                },
+                'rival': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint1'},
+            }
+        )
         name = 'joint1_position_controller'
         for bad in ('nope', 'wrong', 'list', 'jointless', '', 'a b', '../../x'):
             self.assertFalse(self.load(bad), bad)
@@ -202,7 +263,8 @@ class ManagersTest(ControllersTest):
             "Could not start controller with name 'nope' because no controller with this name "
             'exists',
             f"Could not unload controller with name '{name}' because it is still running",
-            'a command takes finite numbers')
+            'a command takes finite numbers',
+        )
         now = self.world().sim_time
         wait_until(lambda: self.world().sim_time > now, 'the world')
 
@@ -216,10 +278,12 @@ class ManagersTest(ControllersTest):
         controllers = {'arm_controller': RECORDED['jtc_effort']['parameters']['arm_controller']}
         for number in range(19):
             controllers[f'position_{number}'] = RECORDED['effort_pos']['parameters'][
-                f'joint{number % 2 + 1}_position_controller']
+                f'joint{number % 2 + 1}_position_controller'
+            ]
         self.spawn_robot(parameters=controllers)
         pid = xmlrpc.client.ServerProxy(rosgraph.Master('/test').lookupNode('/gazebo')).getPid(
-            '/test')[2]
+            '/test'
+        )[2]
         threads = Path(f'/proc/{pid}/task')
         before = {}
         # Twenty controllers, five times; before, the server has not imported all yet.
@@ -236,8 +300,7 @@ class ManagersTest(ControllersTest):
                 count = len(list(threads.iterdir()))
         self.assertEqual(graph(), before)
         self.assertEqual(self.states(), {})
-        wait_until(lambda: len(list(threads.iterdir())) <= count,
-                   f'{count} threads, as before')
+        wait_until(lambda: len(list(threads.iterdir())) <= count, f'{count} threads, as before')
 
     def test_the_world_goes_on_until_the_description_arrives(self):
         self.assertFalse(rospy.has_param('/robot_description'))

@@ -16,18 +16,24 @@ from simulator import BOX, DEADLINE, pose, wait_until
 
 TIMES = 10
 SPARE = 5  # files and threads of calls between nodes and master
-SENTENCE = ("SpawnModel: Failure - model 'bad' is rejected: tested in a process of its own, "
-            'it crashed the physics engine (SIGSEGV)')
+SENTENCE = (
+    "SpawnModel: Failure - model 'bad' is rejected: tested in a process of its own, "
+    'it crashed the physics engine (SIGSEGV)'
+)
 # More surfaces on one body than PyBullet can report.
-ROUGH = BOX.replace('</robot>', ''.join(
-    f'''<link name="l{i}"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
+ROUGH = BOX.replace(
+    '</robot>',
+    ''.join(
+        f"""<link name="l{i}"><collision><geometry><box size="1 1 1"/></geometry></collision></link>
         <joint name="j{i}" type="fixed"><parent link="body"/><child link="l{i}"/></joint>
-        <gazebo reference="l{i}"><mu1>{i / 200}</mu1></gazebo>''' for i in range(200))
-    + '</robot>')
+        <gazebo reference="l{i}"><mu1>{i / 200}</mu1></gazebo>"""
+        for i in range(200)
+    )
+    + '</robot>',
+)
 
 
 class CrashSandboxTest(OwnServerTest):
-
     program: Mapping[str, str] = {'package': 'rosbots_description', 'program': 'crashing_server.py'}
 
     def test_crash_in_the_sandbox_does_not_affect_other_robots(self):
@@ -53,8 +59,9 @@ class CrashSandboxTest(OwnServerTest):
                 self.server.process.send_signal(number)
                 response = answer.result(DEADLINE)
                 self.assertFalse(response.success)
-                self.assertEqual(response.status_message,
-                                 'SpawnModel: Failure - the simulator is shutting down')
+                self.assertEqual(
+                    response.status_message, 'SpawnModel: Failure - the simulator is shutting down'
+                )
                 self.assertEqual(self.server.wait()[0], 0)
             self.doCleanups()
             self.setUp()

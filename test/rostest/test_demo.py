@@ -22,13 +22,20 @@ class Demo(unittest.TestCase):
     def test_robot_drives_and_is_drawn(self):
         with tempfile.TemporaryDirectory() as folder:
             shown = subprocess.run(
-                [ROOT / 'rosbots', 'demo', '--output', folder], env=ENVIRONMENT, text=True,
-                stdin=subprocess.DEVNULL, capture_output=True, check=False)
+                [ROOT / 'rosbots', 'demo', '--output', folder],
+                env=ENVIRONMENT,
+                text=True,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                check=False,
+            )
             self.assertEqual((shown.returncode, shown.stderr), (0, ''), shown.stdout)
             numbers = {
                 part: [float(number) for number in re.findall(r'-?\d+\.\d+', rest)]
-                for part, rest in re.findall(r'^(straight|turn|stop) +[\d.]+ s(.*)$',
-                                             shown.stdout, re.M)}
+                for part, rest in re.findall(
+                    r'^(straight|turn|stop) +[\d.]+ s(.*)$', shown.stdout, re.M
+                )
+            }
             speed, _, *_, true_speed, _, _ = numbers['straight']
             self.assertGreater(true_speed, RATIOS[0] * speed)
             _, rate, *_, _, true_rate, _ = numbers['turn']

@@ -21,7 +21,6 @@ SETTLING = 1.0  # [s, simulated] until the speed is steady
 
 
 class DiffDriveTest(SimulatorTest):
-
     def setUp(self):
         super().setUp()
         self.bare = topics_of()
@@ -48,8 +47,7 @@ class DiffDriveTest(SimulatorTest):
         self.assertEqual(sum(covariance), sum(POSE_VARIANCES))
         self.assertEqual(set(message.twist.covariance), {0.0})
         stamps = [m.header.stamp.to_nsec() for m in odometry]
-        self.assertEqual(
-            {b - a for a, b in itertools.pairwise(stamps)}, {PERIOD})
+        self.assertEqual({b - a for a, b in itertools.pairwise(stamps)}, {PERIOD})
         truth = self.model_state('rosbots', '')
         self.assertAlmostEqual(message.pose.pose.position.z, truth.pose.position.z, delta=0.002)
 
@@ -57,10 +55,17 @@ class DiffDriveTest(SimulatorTest):
         messages = self.collect('/tf', TFMessage)
         wait_until(lambda: len(messages) > 30, 'transforms')
         self.assertEqual({len(m.transforms) for m in messages}, {1})
-        edges = {(m.transforms[0].header.frame_id, m.transforms[0].child_frame_id)
-                 for m in messages}
-        self.assertEqual(edges, {('odom', 'base_link'), ('base_footprint', 'wheel_left_link'),
-                                 ('base_footprint', 'wheel_right_link')})
+        edges = {
+            (m.transforms[0].header.frame_id, m.transforms[0].child_frame_id) for m in messages
+        }
+        self.assertEqual(
+            edges,
+            {
+                ('odom', 'base_link'),
+                ('base_footprint', 'wheel_left_link'),
+                ('base_footprint', 'wheel_right_link'),
+            },
+        )
 
     def test_joint_states_are_right_then_left_with_positions_only(self):
         messages = self.collect('/joint_states', JointState)
@@ -87,11 +92,17 @@ class DiffDriveTest(SimulatorTest):
         self._steady(0.5, 0.5)
         self.pause()
         truth = self.model_state('rosbots', '')
-        wait_until(lambda: truth.header.stamp - self._odometry[-1].header.stamp
-                   <= rospy.Duration(nsecs=2 * PERIOD), 'the last odometry')
+        wait_until(
+            lambda: (
+                truth.header.stamp - self._odometry[-1].header.stamp
+                <= rospy.Duration(nsecs=2 * PERIOD)
+            ),
+            'the last odometry',
+        )
         odometry = self._odometry[-1].pose.pose
-        apart = math.hypot(odometry.position.x - truth.pose.position.x,
-                           odometry.position.y - truth.pose.position.y)
+        apart = math.hypot(
+            odometry.position.x - truth.pose.position.x, odometry.position.y - truth.pose.position.y
+        )
         self.assertLess(apart, 0.02)  # [m], the distance of two periods
 
     def test_namespaces_and_tf_prefix(self):
@@ -123,8 +134,10 @@ class DiffDriveTest(SimulatorTest):
         begin = self._odometry[-1].header.stamp.to_sec() + SETTLING
         wait_until(lambda: self._odometry[-1].header.stamp.to_sec() > begin + 1.0, 'a drive')
         steady = [m.twist.twist for m in self._odometry if m.header.stamp.to_sec() > begin]
-        return (sum(t.linear.x for t in steady) / len(steady),
-                sum(t.angular.z for t in steady) / len(steady))
+        return (
+            sum(t.linear.x for t in steady) / len(steady),
+            sum(t.angular.z for t in steady) / len(steady),
+        )
 
     @staticmethod
     def _moves(message):

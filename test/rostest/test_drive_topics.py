@@ -15,13 +15,11 @@ from simulator import SimulatorTest, pose, topics_of, wait_until
 from tf2_msgs.msg import TFMessage
 
 ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
-WHEEL = ('<wheel link_name="{side}_{end}_link"><wheel_normal_force>29</wheel_normal_force>'
-         '</wheel>')
+WHEEL = '<wheel link_name="{side}_{end}_link"><wheel_normal_force>29</wheel_normal_force></wheel>'
 STEERED = ['steer_joint', 'front_joint', 'left_joint', 'right_joint']
 
 
 class DriveTest(SimulatorTest):
-
     def spawn_recorded(self, name, topics):
         """Spawn a robot; return its odometry and a function that sends commands."""
         before = topics_of()
@@ -40,8 +38,11 @@ class DriveTest(SimulatorTest):
         return self.collect('/odom', Odometry), command
 
     def edges(self, messages):
-        return {(edge.header.frame_id, edge.child_frame_id)
-                for message in messages for edge in message.transforms}
+        return {
+            (edge.header.frame_id, edge.child_frame_id)
+            for message in messages
+            for edge in message.transforms
+        }
 
     def test_odometry_of_a_skid_steer_is_planar_with_its_covariances(self):
         odometry, command = self.spawn_recorded('skid4', {'/cmd_vel', '/odom', '/tf'})
@@ -58,8 +59,11 @@ class DriveTest(SimulatorTest):
 
     def test_slip_compliance_is_set_by_dynamic_reconfigure(self):
         before = topics_of()
-        wheels = ''.join(WHEEL.format(side=side, end=end)
-                         for side in ('left', 'right') for end in ('front', 'rear'))
+        wheels = ''.join(
+            WHEEL.format(side=side, end=end)
+            for side in ('left', 'right')
+            for end in ('front', 'rear')
+        )
         plugin = f'<gazebo><plugin name="s" filename="libgazebo_ros_wheel_slip.so">{wheels}'
         xml = (ROBOTS / 'skid4.urdf').read_text(encoding='utf-8')
         xml = xml.replace('</robot>', f'{plugin}</plugin></gazebo></robot>')

@@ -37,8 +37,12 @@ MANY = 20
 SPARE = 5  # files and threads of calls between nodes and master, open for a while
 SIMULTANEOUS = 200
 FULL = 2048  # [bytes] in the send queue: the subscriber's buffer is full
-TOPICS = {'/clock': Clock, '/gazebo/model_states': ModelStates, '/gazebo/link_states': LinkStates,
-          '/odom': Odometry}
+TOPICS = {
+    '/clock': Clock,
+    '/gazebo/model_states': ModelStates,
+    '/gazebo/link_states': LinkStates,
+    '/odom': Odometry,
+}
 
 
 def spawn_request(name, x):
@@ -46,7 +50,6 @@ def spawn_request(name, x):
 
 
 class DyingClientsTest(OwnServerTest):
-
     def setUp(self):
         super().setUp()
         self.drive_neighbour()
@@ -81,9 +84,23 @@ class DyingClientsTest(OwnServerTest):
     def test_processes_killed_during_a_spawn(self):
         for i in range(5):
             with subprocess.Popen(
-                ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-param', 'robot_description',
-                 '-model', f'robot_{i}', '-robot_namespace', f'robot_{i}', '-y', str(3 * i + 3)],
-                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                [
+                    'rosrun',
+                    'gazebo_ros',
+                    'spawn_model',
+                    '-urdf',
+                    '-param',
+                    'robot_description',
+                    '-model',
+                    f'robot_{i}',
+                    '-robot_namespace',
+                    f'robot_{i}',
+                    '-y',
+                    str(3 * i + 3),
+                ],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
             ) as client:
                 while 'Calling service' not in client.stdout.readline():
                     self.assertIsNone(client.poll())
@@ -111,13 +128,12 @@ class DyingClientsTest(OwnServerTest):
 
     def test_malformed_requests(self):
         for request in (
-            struct.pack('<I', 0xffffffff),  # four gigabytes are to follow
-            struct.pack('<II', 4, 0xffffffff),  # four bytes, of which as many are a name
+            struct.pack('<I', 0xFFFFFFFF),  # four gigabytes are to follow
+            struct.pack('<II', 4, 0xFFFFFFFF),  # four bytes, of which as many are a name
             struct.pack('<I', 3) + b'abc',
         ):
             for persistent in '01':
-                client = service_connection(
-                    'get_model_state', GetModelState, persistent=persistent)
+                client = service_connection('get_model_state', GetModelState, persistent=persistent)
                 client.sendall(request)
                 with client.makefile('rb') as file:
                     self.assertNotIn(b'\x01', file.read()[:1])  # the byte of success
@@ -150,7 +166,9 @@ class DyingClientsTest(OwnServerTest):
 
     def test_a_stopped_process(self):
         with subprocess.Popen(
-            ['rostopic', 'echo', '/gazebo/link_states'], stdout=subprocess.PIPE, text=True,
+            ['rostopic', 'echo', '/gazebo/link_states'],
+            stdout=subprocess.PIPE,
+            text=True,
         ) as client:
             while 'name' not in client.stdout.readline():
                 self.assertIsNone(client.poll())

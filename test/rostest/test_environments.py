@@ -28,10 +28,24 @@ CLOSED = ('sh', '-c', 'exec "$@" <&- >&- 2>&-', 'sh')
 # Root may unshare, unless a container forbids it; other users need a user namespace.
 UNSHARE = ('unshare',) if os.geteuid() == 0 else ('unshare', '--map-root-user')
 # Private mount namespaces, for the command that follows.
-SMALL = (*UNSHARE, '--mount', 'sh', '-c', 'for place in "$DISK" /dev/shm; do '
-         'mount -t tmpfs -o size=1m small "$place" || exit; done; exec "$@"', 'sh')
-READ_ONLY = (*UNSHARE, '--mount', 'sh', '-c', 'mount --bind "$PACKAGE" "$PACKAGE" && '
-             'mount -o remount,bind,ro "$PACKAGE" && exec "$@"', 'sh', *NOBODY)
+SMALL = (
+    *UNSHARE,
+    '--mount',
+    'sh',
+    '-c',
+    'for place in "$DISK" /dev/shm; do '
+    'mount -t tmpfs -o size=1m small "$place" || exit; done; exec "$@"',
+    'sh',
+)
+READ_ONLY = (
+    *UNSHARE,
+    '--mount',
+    'sh',
+    '-c',
+    'mount --bind "$PACKAGE" "$PACKAGE" && mount -o remount,bind,ro "$PACKAGE" && exec "$@"',
+    'sh',
+    *NOBODY,
+)
 NOWHERE = (*UNSHARE, '--net', '--uts', PACKAGE / 'test' / 'rostest' / 'nowhere.py')
 # Master, server and spawn_model, without any address in the environment.
 MEET = """
@@ -79,7 +93,6 @@ def fill(path):
 
 
 class EnvironmentsTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.root = Path(tempfile.mkdtemp())
@@ -93,7 +106,8 @@ class EnvironmentsTest(unittest.TestCase):
         (cls.folder / 'größe.world').write_text(WORLD, encoding='utf-8')
         for name, uri in (('coded', f'file://{quote(str(mesh))}'), ('written', f'file://{mesh}')):
             (cls.folder / f'bär {name}.urdf').write_text(
-                ROBOT.format(quoteattr(uri)), encoding='utf-8')
+                ROBOT.format(quoteattr(uri)), encoding='utf-8'
+            )
 
     @classmethod
     def tearDownClass(cls):
@@ -101,8 +115,9 @@ class EnvironmentsTest(unittest.TestCase):
 
     def require(self, *command, **environment):
         """Skip the test where the machine does not permit such namespaces."""
-        done = subprocess.run(command, env={**os.environ, **environment}, text=True,
-                              capture_output=True, check=False)
+        done = subprocess.run(
+            command, env={**os.environ, **environment}, text=True, capture_output=True, check=False
+        )
         if done.returncode:
             reason = f'this machine does not permit it: {done.stderr.strip()}'
             print(f'SKIPPED {self._testMethodName}: {reason}')  # rosunit reports it as passed
@@ -137,13 +152,25 @@ class EnvironmentsTest(unittest.TestCase):
 
     def test_non_ascii_names_and_folders_work_in_the_locale_c(self):
         surroundings = {
-            'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONIOENCODING': 'ascii',
-            'GAZEBO_MODEL_PATH': str(self.folder / 'models'), 'TMPDIR': str(self.folder)}
+            'LC_ALL': 'C',
+            'PYTHONUTF8': '0',
+            'PYTHONIOENCODING': 'ascii',
+            'GAZEBO_MODEL_PATH': str(self.folder / 'models'),
+            'TMPDIR': str(self.folder),
+        }
         server = self.server(str(self.folder / 'größe.world'), **surroundings)
         for name in ('coded', 'written'):
-            with ServerProcess('-urdf', '-file', str(self.folder / f'bär {name}.urdf'),
-                               '-model', f'bär {name}', '-gazebo_namespace', '/harsh',
-                               program='spawn_model', **surroundings) as client:
+            with ServerProcess(
+                '-urdf',
+                '-file',
+                str(self.folder / f'bär {name}.urdf'),
+                '-model',
+                f'bär {name}',
+                '-gazebo_namespace',
+                '/harsh',
+                program='spawn_model',
+                **surroundings,
+            ) as client:
                 code, printed = client.wait()
             self.assertEqual(code, 0, printed)
         self.assert_is_running([GROUND, 'tür', 'bär coded', 'bär written'])
@@ -156,8 +183,9 @@ class EnvironmentsTest(unittest.TestCase):
         server = self.server(HOME=nothing, ROS_HOME=nothing, ROS_LOG_DIR=f'{nothing}/log')
         self.assert_carries_the_robot()
         printed = self.assert_ends_well(server)
-        self.assertIn(f'log file {nothing}/log/harsh.log cannot be written (Not a directory)',
-                      printed)
+        self.assertIn(
+            f'log file {nothing}/log/harsh.log cannot be written (Not a directory)', printed
+        )
         self.assertIn('contradict the collision geometry', printed)
 
     def test_server_works_with_closed_standard_streams(self):
@@ -178,9 +206,11 @@ class EnvironmentsTest(unittest.TestCase):
         for _ in range(BLOCK // 256):  # until the errors fill the log's last block
             answer = self.spawn('bear', bear)
             self.assertFalse(answer.success)
-        self.assertIn(f"räder.dae' cannot be made ready: nothing can be written in {disk} "
-                      '(No space left on device) nor in /dev/shm (No space left on device); ',
-                      answer.status_message)
+        self.assertIn(
+            f"räder.dae' cannot be made ready: nothing can be written in {disk} "
+            '(No space left on device) nor in /dev/shm (No space left on device); ',
+            answer.status_message,
+        )
         self.assertTrue(self.spawn('box', BOX).success)
         self.assert_is_running([GROUND, 'rosbots', 'box'])
         printed = self.assert_ends_well(server)
@@ -188,21 +218,38 @@ class EnvironmentsTest(unittest.TestCase):
 
     def test_user_without_privileges_needs_read_access_only(self):
         # For example, other users cannot read in the home of root.
-        self.require(*READ_ONLY, 'python3', '-c', 'import rosbots_description, pybullet',
-                     PACKAGE=str(PACKAGE))
-        server = self.server(prefix=READ_ONLY, PACKAGE=str(PACKAGE), HOME='/nonexistent',
-                             ROS_HOME='/nonexistent', ROS_LOG_DIR='/nonexistent/log')
+        self.require(
+            *READ_ONLY,
+            'python3',
+            '-c',
+            'import rosbots_description, pybullet',
+            PACKAGE=str(PACKAGE),
+        )
+        server = self.server(
+            prefix=READ_ONLY,
+            PACKAGE=str(PACKAGE),
+            HOME='/nonexistent',
+            ROS_HOME='/nonexistent',
+            ROS_LOG_DIR='/nonexistent/log',
+        )
         self.assert_carries_the_robot()
         self.assert_ends_well(server)
 
     def test_programs_connect_without_network_and_resolvable_hostname(self):
         self.require(*NOWHERE, 'true')
-        surroundings = {name: value for name, value in os.environ.items()
-                        if name not in ('ROS_HOSTNAME', 'ROS_IP')}
+        surroundings = {
+            name: value
+            for name, value in os.environ.items()
+            if name not in ('ROS_HOSTNAME', 'ROS_IP')
+        }
         done = subprocess.run(
             [*NOWHERE, 'sh', '-c', MEET, 'sh', self.folder / 'bär coded.urdf'],
             env=surroundings | {'ROS_MASTER_URI': 'http://localhost:11311'},
-            capture_output=True, text=True, timeout=3 * DEADLINE, check=False)
+            capture_output=True,
+            text=True,
+            timeout=3 * DEADLINE,
+            check=False,
+        )
         printed = done.stdout + done.stderr
         self.assertEqual(done.returncode, 0, printed)
         self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)
@@ -212,8 +259,9 @@ class EnvironmentsTest(unittest.TestCase):
         surroundings = {name: value for name, value in os.environ.items() if name != 'DISPLAY'}
         surroundings |= {'WAYLAND_DISPLAY': 'wayland-0', 'HOME': str(self.folder)}
         log, world_name = self.root / 'launch.log', f'world_name:={self.folder}/größe.world'
-        with Launched(['gazebo_ros', 'empty_world.launch', world_name], log,
-                      surroundings) as launched:
+        with Launched(
+            ['gazebo_ros', 'empty_world.launch', world_name], log, surroundings
+        ) as launched:
             rospy.wait_for_service('/gazebo/unpause_physics', 2 * DEADLINE)
             wait_until(lambda: 'gzclient: no window' in log.read_text(), 'the message')
             models = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)

@@ -20,14 +20,20 @@ BUILD_LIMIT = 600.0  # [s, wall]; usually a tenth of that
 
 
 class ForeignPackageTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls._folder = tempfile.TemporaryDirectory(prefix='foreign_')
         cls.workspace = Path(cls._folder.name)
         shutil.copytree(SOURCE, cls.workspace / 'source')
-        cls.run_command('cmake', '-S', 'source', '-B', 'build', '-DCATKIN_ENABLE_TESTING=OFF',
-                        f'-DPYTHON_EXECUTABLE={sys.executable}')
+        cls.run_command(
+            'cmake',
+            '-S',
+            'source',
+            '-B',
+            'build',
+            '-DCATKIN_ENABLE_TESTING=OFF',
+            f'-DPYTHON_EXECUTABLE={sys.executable}',
+        )
         cls.run_command('cmake', '--build', 'build')
 
     @classmethod
@@ -37,8 +43,15 @@ class ForeignPackageTest(unittest.TestCase):
     @classmethod
     def run_command(cls, *command):
         ended = subprocess.run(
-            command, cwd=cls.workspace, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL, text=True, timeout=BUILD_LIMIT, check=False)
+            command,
+            cwd=cls.workspace,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            timeout=BUILD_LIMIT,
+            check=False,
+        )
         if ended.returncode != 0:
             raise AssertionError(f'{" ".join(command)} failed:\n{ended.stdout}')
         return ended.stdout
@@ -47,13 +60,16 @@ class ForeignPackageTest(unittest.TestCase):
         states = LinkStates(
             name=['ground_plane::link', 'box::body'],
             pose=[Pose(Point(0, 0, z), Quaternion(0, 0, 0, 1)) for z in (0.0, 0.25)],
-            twist=[Twist(), Twist()])
+            twist=[Twist(), Twist()],
+        )
         buffer = io.BytesIO()
         states.serialize(buffer)
         (self.workspace / 'states').write_bytes(buffer.getvalue())
         program = 'build/devel/lib/foreign_package/link_names'
-        self.assertEqual(self.run_command(f'./{program}', 'states').splitlines(),
-                         ['ground_plane::link 0', 'box::body 0.25', SpawnModel._md5sum])
+        self.assertEqual(
+            self.run_command(f'./{program}', 'states').splitlines(),
+            ['ground_plane::link 0', 'box::body 0.25', SpawnModel._md5sum],
+        )
 
     def test_a_plugin_of_gazebo_stops_with_one_sentence(self):
         with self.assertRaisesRegex(AssertionError, 'There is no Gazebo here, so its plugins'):
@@ -61,10 +77,11 @@ class ForeignPackageTest(unittest.TestCase):
 
     def test_its_launch_files_find_ours(self):
         for tool, package, path in (
-                ('rospack', 'gazebo_dev', 'package.xml'),
-                ('rospack', 'gazebo_plugins', 'test/test_worlds/gazebo_ros_range.world'),
-                ('rospack', 'gazebo_ros', 'launch/empty_world.launch'),
-                ('rosstack', 'gazebo_ros_pkgs', 'package.xml')):  # ROS's word for a metapackage
+            ('rospack', 'gazebo_dev', 'package.xml'),
+            ('rospack', 'gazebo_plugins', 'test/test_worlds/gazebo_ros_range.world'),
+            ('rospack', 'gazebo_ros', 'launch/empty_world.launch'),
+            ('rosstack', 'gazebo_ros_pkgs', 'package.xml'),
+        ):  # ROS's word for a metapackage
             found = self.run_command(tool, 'find', package).strip()
             self.assertTrue(os.path.isfile(os.path.join(found, path)), f'{found}/{path}')
 

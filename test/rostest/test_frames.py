@@ -33,17 +33,23 @@ ARTICLE = """<launch>
 </launch>
 """
 WHEELS = {'wheel_left_link', 'wheel_right_link'}
-TREE = {'base_footprint': {'odom'}, 'base_link': {'base_footprint'},
-        'wheel_left_link': {'base_link'}, 'wheel_right_link': {'base_link'}}
+TREE = {
+    'base_footprint': {'odom'},
+    'base_link': {'base_footprint'},
+    'wheel_left_link': {'base_link'},
+    'wheel_right_link': {'base_link'},
+}
 DRIVEN_TREE = {child: parents for child, parents in TREE.items() if child != 'base_link'}
-BY_THE_TAGS = {'base_link': {'odom'}, 'wheel_left_link': {'base_footprint'},
-               'wheel_right_link': {'base_footprint'}}
+BY_THE_TAGS = {
+    'base_link': {'odom'},
+    'wheel_left_link': {'base_footprint'},
+    'wheel_right_link': {'base_footprint'},
+}
 # Escape sequences of titles and colours.
 CONTROL = re.compile(r'\x1b\][^\x07]*\x07|\x1b\[[0-9;]*m')
 
 
 class FramesTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.addClassCleanup(open_display())
@@ -65,7 +71,8 @@ class FramesTest(unittest.TestCase):
 
     def _note_joints(self, message):
         self._joints[message._connection_header['callerid']] = dict(
-            zip(message.name, message.position, strict=True))
+            zip(message.name, message.position, strict=True)
+        )
 
     def _note(self, message):
         for transform in message.transforms:
@@ -82,8 +89,11 @@ class FramesTest(unittest.TestCase):
     def end(self, terminal):
         if terminal.process.poll() is None:
             os.killpg(terminal.process.pid, signal.SIGINT)
-            wait_until(lambda: terminal.shown() is not None
-                       and terminal.process.poll() is not None, 'the end', STEP)
+            wait_until(
+                lambda: terminal.shown() is not None and terminal.process.poll() is not None,
+                'the end',
+                STEP,
+            )
 
     def rviz(self, own=False):
         """Launch rviz.launch, a reader's or ours, and wait until RViz is ready."""
@@ -113,8 +123,11 @@ class FramesTest(unittest.TestCase):
         publisher.publish(command)
         wait_until(lambda: self._travelled > end, 'the drive', STEP)
         publisher.publish(Twist())
-        return {child: self._edges[child] for child in (*WHEELS, 'base_link', 'base_footprint')
-                if child in self._edges}
+        return {
+            child: self._edges[child]
+            for child in (*WHEELS, 'base_link', 'base_footprint')
+            if child in self._edges
+        }
 
     def assert_complete_and_quiet(self, terminals):
         """Drive; assert that the TF tree is complete and terminals are quiet."""
@@ -135,11 +148,17 @@ class FramesTest(unittest.TestCase):
             self.assertLessEqual(shown.count('TF_'), len(WHEELS), shown)
 
     def _angles_agree(self):
-        told, passed_on = (self._joints.get(f'/{name}') for name in
-                           ('gazebo', 'joint_state_publisher'))
-        return told and passed_on and all(
-            abs(angle) > TURNED and abs(angle - passed_on[joint]) < TURNED / 10
-            for joint, angle in told.items())
+        told, passed_on = (
+            self._joints.get(f'/{name}') for name in ('gazebo', 'joint_state_publisher')
+        )
+        return (
+            told
+            and passed_on
+            and all(
+                abs(angle) > TURNED and abs(angle - passed_on[joint]) < TURNED / 10
+                for joint, angle in told.items()
+            )
+        )
 
     def test_rviz_before_the_simulator(self):
         view = self.rviz()

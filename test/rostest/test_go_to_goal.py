@@ -35,13 +35,13 @@ def track(environment):
     points, ended = [info['pose'][:2]], False
     while not ended and len(points) < STEPS:
         seen, _, ended, _, info = environment.step(
-            outputs(layers, inputs(seen['laser'], *seen['goal'])))
+            outputs(layers, inputs(seen['laser'], *seen['goal']))
+        )
         points.append(info['pose'][:2])
     return np.array(points), info['is_success']
 
 
 class GoToGoalTest(ExampleNodeTest):
-
     def distance(self, goal):
         at = proxy('get_model_state', GetModelState)('rosbots', '').pose.position
         return math.dist((at.x, at.y), goal)
@@ -74,8 +74,18 @@ class GoToGoalTest(ExampleNodeTest):
         environment.close()
         self.track.clear()
         ended = subprocess.run(
-            [ROOT / 'scripts' / 'follow_policy.py', f'_policy:={POLICY}', '_x:=1.5', '_y:=0.5',
-             f'cmd_vel:={COMMANDS}'], capture_output=True, text=True, timeout=LIMIT, check=False)
+            [
+                ROOT / 'scripts' / 'follow_policy.py',
+                f'_policy:={POLICY}',
+                '_x:=1.5',
+                '_y:=0.5',
+                f'cmd_vel:={COMMANDS}',
+            ],
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+        )
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
         wait_until(lambda: self.speed < AT_REST, 'the robot stopping')
         # Where it stops depends on how late the last command is; where it has been does not.

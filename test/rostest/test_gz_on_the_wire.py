@@ -20,15 +20,20 @@ MODEL = """<sdf version="1.6"><model name="any"><link name="body">
 
 def gz(*arguments, code=0, **options):
     """Return what a command prints, on the stream that fits its exit code."""
-    ended = subprocess.run(['gz', *arguments], capture_output=True, text=True,
-                           timeout=3 * DEADLINE, check=False, **options)
+    ended = subprocess.run(
+        ['gz', *arguments],
+        capture_output=True,
+        text=True,
+        timeout=3 * DEADLINE,
+        check=False,
+        **options,
+    )
     if ended.returncode != code:
         raise AssertionError(f'gz {arguments} ended with {ended.returncode}: {ended.stderr}')
     return ended.stderr if code else ended.stdout
 
 
 class GzTest(SimulatorTest):
-
     def test_a_model_is_spawned_moved_shown_and_deleted(self):
         self.pause()
         gz('model', '-s', '-m', 'crate', '-z', '0.5', input=MODEL)
@@ -36,8 +41,10 @@ class GzTest(SimulatorTest):
         gz('model', '-m', 'crate', '-x', '-2e0', '-z', '1.5', '-Y', '0.25')
         self.assertEqual(gz('model', '-m', 'crate', '-p'), '-2 0 1.5 0 0 0.25\n')
         gz('model', '-m', 'crate', '-d')
-        self.assertEqual(gz('model', '-m', 'crate', '-d', code=1),
-                         'gz model: DeleteModel: model does not exist\n')
+        self.assertEqual(
+            gz('model', '-m', 'crate', '-d', code=1),
+            'gz model: DeleteModel: model does not exist\n',
+        )
 
     def test_the_world_is_stepped_exactly_and_reset(self):
         gz('world', '-p', '1', '-r')
@@ -55,7 +62,8 @@ class GzTest(SimulatorTest):
             shown.terminate()
         for line in lines:
             self.assertRegex(
-                line, r'^Factor\[\d+\.\d\d\] SimTime\[[\d.]+\] RealTime\[[\d.]+\] Paused\[F\]$')
+                line, r'^Factor\[\d+\.\d\d\] SimTime\[[\d.]+\] RealTime\[[\d.]+\] Paused\[F\]$'
+            )
         times = [float(re.search(r'SimTime\[(.+?)\]', line)[1]) for line in lines]
         self.assertEqual(times, sorted(times))
         self.assertLessEqual({'/clock', '/gazebo/model_states'}, set(gz('topic', '-l').split()))
@@ -68,14 +76,24 @@ class GzTest(SimulatorTest):
         self.assertTrue(answer.success, answer.status_message)
         self.assertIn('<model name="crate">', answer.sdf)
         refused = save('crate.world', False)
-        self.assertEqual((refused.success, refused.status_message.partition(';')[0]),
-                         (False, "SaveWorld: Failure - 'crate.world' is not an absolute path"))
+        self.assertEqual(
+            (refused.success, refused.status_message.partition(';')[0]),
+            (False, "SaveWorld: Failure - 'crate.world' is not an absolute path"),
+        )
         with tempfile.TemporaryDirectory() as folder:
-            for file, complaint in (('a.world', ''), ('a.world', 'it exists already'),
-                                    ('a.txt', 'ends in .world or .sdf')):
+            for file, complaint in (
+                ('a.world', ''),
+                ('a.world', 'it exists already'),
+                ('a.txt', 'ends in .world or .sdf'),
+            ):
                 ended = subprocess.run(
-                    ['rosrun', 'gazebo_ros', 'save_world', file], cwd=folder, check=False,
-                    capture_output=True, text=True, timeout=3 * DEADLINE)
+                    ['rosrun', 'gazebo_ros', 'save_world', file],
+                    cwd=folder,
+                    check=False,
+                    capture_output=True,
+                    text=True,
+                    timeout=3 * DEADLINE,
+                )
                 self.assertEqual(ended.returncode, int(bool(complaint)), ended.stderr)
                 self.assertIn(complaint, ended.stderr)
             self.assertEqual(os.listdir(folder), ['a.world'])
@@ -87,9 +105,22 @@ class GzTest(SimulatorTest):
         gz('model', '-s', '-m', 'crate', '-z', '0.5', '-x', '0.5', '-y', '0.5', input=MODEL)
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run(
-                ['rosrun', 'rosbots_simulator', 'save_map', 'crate', '--resolution', '0.5',
-                 '--margin', '0.5', '--height', '0.3'], cwd=folder, check=True,
-                timeout=3 * DEADLINE)
+                [
+                    'rosrun',
+                    'rosbots_simulator',
+                    'save_map',
+                    'crate',
+                    '--resolution',
+                    '0.5',
+                    '--margin',
+                    '0.5',
+                    '--height',
+                    '0.3',
+                ],
+                cwd=folder,
+                check=True,
+                timeout=3 * DEADLINE,
+            )
             self.assertEqual(sorted(os.listdir(folder)), ['crate.pgm', 'crate.yaml'])
             with open(f'{folder}/crate.pgm', 'rb') as file:
                 free, full = bytes([254] * 4), bytes([254, 0, 0, 254])

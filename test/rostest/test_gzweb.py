@@ -58,7 +58,6 @@ def pace():
 
 
 class GzwebTest(unittest.TestCase):
-
     def open(self, *arguments):
         window = Terminal('rosrun', 'gazebo_ros', 'gzweb', *arguments)
         self.addCleanup(window.close)
@@ -66,8 +65,14 @@ class GzwebTest(unittest.TestCase):
 
     def address(self, window):
         found = []
-        wait_until(lambda: found.append(re.search(r'gzweb: the world is at (\S+)', window.shown()))
-                   or found[-1], 'the address', START)
+        wait_until(
+            lambda: (
+                found.append(re.search(r'gzweb: the world is at (\S+)', window.shown()))
+                or found[-1]
+            ),
+            'the address',
+            START,
+        )
         return found[-1][1]
 
     def test_world_is_shown_and_controlled(self):
@@ -89,15 +94,17 @@ class GzwebTest(unittest.TestCase):
                 self.sense(browser)
                 self.navigate(browser)
                 server.process.kill()
-                browser.wait_until(lambda: any('does not answer' in text
-                                               for text in browser.texts()))
+                browser.wait_until(
+                    lambda: any('does not answer' in text for text in browser.texts())
+                )
             wait_until(lambda: subscribed() == set(), 'the window to look no more')
         with ServerProcess() as server, Browser(address) as browser:
             server.wait_ready()
             browser.wait_until(lambda: '/models/ground_plane/link' in browser.nodes)
             browser.wait_until(lambda: LINK not in browser.nodes)  # of the one before
-            browser.wait_until(lambda: not any('does not answer' in text
-                                               for text in browser.texts()))
+            browser.wait_until(
+                lambda: not any('does not answer' in text for text in browser.texts())
+            )
         window.process.send_signal(signal.SIGINT)
         wait_until(lambda: window.process.poll() is not None, 'the end')
         self.assertEqual(window.process.returncode, 0)
@@ -140,12 +147,17 @@ class GzwebTest(unittest.TestCase):
     def drive(self, browser):
         commands = []
         subscriber = rospy.Subscriber('/robot/cmd_vel', Twist, commands.append)
-        browser.wait_until(lambda: any(
-            '/robot/cmd_vel' in props.get('options', ()) for _, props in browser.controls.values()))
+        browser.wait_until(
+            lambda: any(
+                '/robot/cmd_vel' in props.get('options', ())
+                for _, props in browser.controls.values()
+            )
+        )
         browser.press('I')
         browser.wait_until(lambda: len(commands) == 2)
-        self.assertEqual([(one.linear.x, one.angular.z) for one in commands],
-                         [(0.5, 0.0), (0.0, 0.0)])
+        self.assertEqual(
+            [(one.linear.x, one.angular.z) for one in commands], [(0.5, 0.0), (0.0, 0.0)]
+        )
         subscriber.unregister()
 
     def change_a_ball(self, browser):
@@ -187,8 +199,12 @@ class GzwebTest(unittest.TestCase):
         for found, wanted in ((at.x, 2.0), (at.y, 3.0), (at.z, 0.25)):
             self.assertAlmostEqual(found, wanted, places=3)
         browser.upload(UPLOAD, 'bad.urdf', BALL.replace('</link>', '').encode())
-        browser.wait_until(lambda: any(note.startswith('InsertModel: Failure - model_xml, line 5')
-                                       for note in browser.notes()))
+        browser.wait_until(
+            lambda: any(
+                note.startswith('InsertModel: Failure - model_xml, line 5')
+                for note in browser.notes()
+            )
+        )
         browser.upload(UPLOAD, 'ball.urdf', BALL.encode())  # another one is there
         browser.wait_until(lambda: '/models/ball_0/body' in browser.nodes)
         browser.wait_until(lambda: browser.control("Undo: insert 'ball_0'"))
@@ -217,20 +233,30 @@ class GzwebTest(unittest.TestCase):
 
     def wait_for_gizmo(self, browser, point):
         x, y = point.x, point.y
-        browser.wait_until(lambda: '/gizmo' in browser.nodes and math.dist(
-            browser.nodes['/gizmo'][1][:2], (x, y)) < 0.01)
+        browser.wait_until(
+            lambda: (
+                '/gizmo' in browser.nodes
+                and math.dist(browser.nodes['/gizmo'][1][:2], (x, y)) < 0.01
+            )
+        )
 
     def turn_a_joint(self, browser):
         hinge = proxy('get_joint_properties', GetJointProperties)
         proxy('spawn_urdf_model', SpawnModel)('arm', ARM, '', pose(), '')
-        browser.wait_until(lambda: browser.control('Of') and 'arm' in browser.controls[
-            browser.control('Of')][1]['options'])
+        browser.wait_until(
+            lambda: (
+                browser.control('Of')
+                and 'arm' in browser.controls[browser.control('Of')][1]['options']
+            )
+        )
         browser.choose('Of', 'arm')
         browser.wait_until(lambda: browser.control('hinge [rad]'))
         browser.choose('hinge [rad]', 0.5)
         browser.wait_until(lambda: abs(hinge('arm::hinge').position[0] - 0.5) < 1e-6)
         for what, label, rate in (
-                ('velocity', 'hinge [rad/s]', 1.9), ('effort', 'hinge [N m]', 3.0)):
+            ('velocity', 'hinge [rad/s]', 1.9),
+            ('effort', 'hinge [N m]', 3.0),
+        ):
             browser.choose('Sliders set', what)
             browser.wait_until(lambda label=label: browser.control(label))
             before = browser.control(label)
@@ -238,7 +264,8 @@ class GzwebTest(unittest.TestCase):
             browser.wait_until(lambda rate=rate: hinge('arm::hinge').rate[0] > rate)
             browser.click('Release')
             browser.wait_until(
-                lambda label=label, before=before: browser.control(label) not in (None, before))
+                lambda label=label, before=before: browser.control(label) not in (None, before)
+            )
         proxy('delete_model', DeleteModel)('arm')
 
     def sense(self, browser):
@@ -276,8 +303,9 @@ class GzwebTest(unittest.TestCase):
         grid.info.resolution, grid.info.origin.orientation.w = 0.5, 1.0
         maps.publish(grid)
         goals = []
-        self.addCleanup(rospy.Subscriber(
-            '/move_base_simple/goal', PoseStamped, goals.append).unregister)
+        self.addCleanup(
+            rospy.Subscriber('/move_base_simple/goal', PoseStamped, goals.append).unregister
+        )
         browser.wait_until(lambda: browser.control('/map'))
         browser.choose('/map', True)
         node = '/readings/\u2215map'
@@ -287,8 +315,9 @@ class GzwebTest(unittest.TestCase):
         browser.wait_until(lambda: browser.control('2D Nav Goal'))
         browser.click('2D Nav Goal')
         for sentence, along in (('click on the ground', 1.0), ('Now click', 2.0)):
-            browser.wait_until(lambda sentence=sentence: any(
-                sentence in note for note in browser.notes()))
+            browser.wait_until(
+                lambda sentence=sentence: any(sentence in note for note in browser.notes())
+            )
             browser.click_ray([origin[0] + along, origin[1], 5.0], [0.0, 0.0, -1.0])
         browser.wait_until(lambda: goals)
         self.assertEqual(goals[0].header.frame_id, 'map')
@@ -303,8 +332,11 @@ class GzwebTest(unittest.TestCase):
         second = self.open('--port', port)
         wait_until(lambda: second.process.poll() is not None, 'the end', START)
         self.assertEqual(second.process.returncode, 1)
-        self.assertEqual(second.shown(), f'gzweb: no window at 127.0.0.1, port {port}: Address '
-                         'already in use; web_port and web_host choose others\r\n')
+        self.assertEqual(
+            second.shown(),
+            f'gzweb: no window at 127.0.0.1, port {port}: Address '
+            'already in use; web_port and web_host choose others\r\n',
+        )
 
 
 if __name__ == '__main__':

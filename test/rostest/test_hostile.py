@@ -44,7 +44,7 @@ AFTERWARDS = 5  # odometry messages, every 10 ms of simulated time
 STEADY = 50  # odometry messages after which the neighbour counts as driving
 AWAY = (30.0, 30.0, 0.5)  # [m] spawn position, away from the neighbour
 HUGE = (math.nan, math.inf, -math.inf, 1e308)
-ODD_NAMES = ('a/b', '/a', 'a b', 'ünï', '🤖', "a'b\"c", '<a>', '%s{}', '::', '$(a)', '~', '..')
+ODD_NAMES = ('a/b', '/a', 'a b', 'ünï', '🤖', 'a\'b"c', '<a>', '%s{}', '::', '$(a)', '~', '..')
 ODD_NAMESPACES = ('a b', '\n', 'ü', '..', 'a' * 10_000)  # none of them gives the topic /odom
 UNFIT_NAMES = ('', 'a\nb', 'a\0b', 'a\tb', 'a' * 100_000)
 
@@ -55,11 +55,12 @@ class RawRequest(SpawnModel._request_class):
     def serialize(self, buff):
         """Serialize like SpawnModelRequest, without encoding."""
         stream = io.BytesIO()
-        plain = SpawnModel._request_class(self.model_name, 'XML', *[
-            getattr(self, slot) for slot in self.__slots__[2:]])
+        plain = SpawnModel._request_class(
+            self.model_name, 'XML', *[getattr(self, slot) for slot in self.__slots__[2:]]
+        )
         plain.serialize(stream)
         name = self.model_name.encode()
-        rest = stream.getvalue()[4 + len(name) + 4 + 3:]
+        rest = stream.getvalue()[4 + len(name) + 4 + 3 :]
         for text in (name, self.model_xml):
             buff.write(len(text).to_bytes(4, 'little') + text)
         buff.write(rest)
@@ -93,7 +94,8 @@ class HostileTest(SimulatorTest):
         # Beyond its ramp, and beyond the swing after its drop to the ground.
         latest = list(self._odometry)[-STEADY:]
         return len(latest) == STEADY and all(
-            reading.twist.twist.angular.z > 0.9 * TURN for reading in latest)
+            reading.twist.twist.angular.z > 0.9 * TURN for reading in latest
+        )
 
     def _memory(self):
         """Return the resident memory of the server [bytes]."""
@@ -126,7 +128,8 @@ class HostileTest(SimulatorTest):
         text = case.text(folder)
         service = self._spawn_sdf if case.kind == 'sdf' else self.spawn_service
         request = RawRequest(
-            'hostile', text if isinstance(text, bytes) else text.encode(), '/', pose(*AWAY), '')
+            'hostile', text if isinstance(text, bytes) else text.encode(), '/', pose(*AWAY), ''
+        )
         try:
             response = service.call(request)
         except rospy.ServiceException as error:
@@ -151,15 +154,17 @@ class HostileTest(SimulatorTest):
                     self.assertIn(case.wire_says or case.says, sentence)
                     self.assertNotIn('\n', sentence)
                     self.assertEqual(
-                        success, 'hostile' in self.world().model_names, self.world().model_names)
+                        success, 'hostile' in self.world().model_names, self.world().model_names
+                    )
                     if success:
                         self.assertTrue(self.delete('hostile').success)
         self.assertLess(self._memory() - before, GROWN)
 
     def test_text_that_is_not_unicode(self):
         with self._neighbour_drives_on():
-            response = self.spawn_service.call(RawRequest(
-                'hostile', b'<robot name="caf\xe9"/>', '/', pose(*AWAY), ''))
+            response = self.spawn_service.call(
+                RawRequest('hostile', b'<robot name="caf\xe9"/>', '/', pose(*AWAY), '')
+            )
             self.assertFalse(response.success)
 
     def test_names(self):
@@ -190,12 +195,16 @@ class HostileTest(SimulatorTest):
         """Extreme numbers are rejected, or leave finite states."""
         self.assertTrue(self.spawn('box', BOX, pose(*AWAY)).success)
         services = {
-            name: proxy(name, kind) for name, kind in {
-                'set_model_state': SetModelState, 'apply_body_wrench': ApplyBodyWrench,
-                'apply_joint_effort': ApplyJointEffort, 'set_link_properties': SetLinkProperties,
+            name: proxy(name, kind)
+            for name, kind in {
+                'set_model_state': SetModelState,
+                'apply_body_wrench': ApplyBodyWrench,
+                'apply_joint_effort': ApplyJointEffort,
+                'set_link_properties': SetLinkProperties,
                 'set_model_configuration': SetModelConfiguration,
                 'get_physics_properties': GetPhysicsProperties,
-                'set_physics_properties': SetPhysicsProperties}.items()
+                'set_physics_properties': SetPhysicsProperties,
+            }.items()
         }
         with self._neighbour_drives_on():
             for number in HUGE:
@@ -206,7 +215,8 @@ class HostileTest(SimulatorTest):
             for step in (-0.001, 0.0, *HUGE):
                 with self.subTest(step=step):
                     response = services['set_physics_properties'](
-                        step, physics.max_update_rate, physics.gravity, physics.ode_config)
+                        step, physics.max_update_rate, physics.gravity, physics.ode_config
+                    )
                     self.assertFalse(response.success, response)
             self.assertEqual(services['get_physics_properties']().time_step, physics.time_step)
 
@@ -216,21 +226,25 @@ class HostileTest(SimulatorTest):
         if spawned.success:
             self.delete('far')
         self.assertFalse(spawned.success and not finite)
-        for state in (ModelState('box', pose(number, *AWAY[1:]), Twist(), ''),
-                      ModelState('box', pose(*AWAY), Twist(linear=Vector3(number, 0, 0)), '')):
+        for state in (
+            ModelState('box', pose(number, *AWAY[1:]), Twist(), ''),
+            ModelState('box', pose(*AWAY), Twist(linear=Vector3(number, 0, 0)), ''),
+        ):
             self.assertFalse(services['set_model_state'](state).success and not finite)
         wrench = Wrench(force=Vector3(0, 0, number))
         answer = services['apply_body_wrench'](
-            'box::body', '', pose().position, wrench, rospy.Time(), rospy.Duration(0.01))
+            'box::body', '', pose().position, wrench, rospy.Time(), rospy.Duration(0.01)
+        )
         self.assertFalse(answer.success and not finite)
         answer = services['apply_joint_effort'](
-            'no_such_joint', number, rospy.Time(), rospy.Duration(0.01))
+            'no_such_joint', number, rospy.Time(), rospy.Duration(0.01)
+        )
         self.assertFalse(answer.success)
         answer = services['set_link_properties'](
-            'box::body', pose(0, 0, 0), True, number, 1, 0, 0, 1, 0, 1)
+            'box::body', pose(0, 0, 0), True, number, 1, 0, 0, 1, 0, 1
+        )
         self.assertFalse(answer.success and not finite)
-        answer = services['set_model_configuration'](
-            'neighbour', '', ['no_such_joint'], [number])
+        answer = services['set_model_configuration']('neighbour', '', ['no_such_joint'], [number])
         self.assertFalse(answer.success and not finite)
 
 

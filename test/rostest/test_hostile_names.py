@@ -52,7 +52,7 @@ UPLOAD = 'Upload URDF, xacro or SDF'
 REFUSED = '<b\tclass=evil>tab'  # as a name of a model, which has no control characters
 NAMES = [text for text in TEXTS if text != REFUSED]
 # Models and files are named by three texts: so many names and notifications are faster to show.
-GROUPS = [TEXTS[begin:begin + 3] for begin in range(0, len(TEXTS), 3)]
+GROUPS = [TEXTS[begin : begin + 3] for begin in range(0, len(TEXTS), 3)]
 MODELS = {''.join(group): group[0] for group in GROUPS if REFUSED not in group}  # and their links
 SLIDERS, CURVES = 40, 20  # at once
 CONTROLLERS = 'topics of controllers'
@@ -70,7 +70,6 @@ return arguments[0].filter(text => !shown.includes(text.replace(/\\s/g, ' ')))""
 
 
 class HostileNamesTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         warnings.simplefilter('ignore', UserWarning)  # rospy's, of the names of topics
@@ -80,7 +79,8 @@ class HostileNamesTest(unittest.TestCase):
         for name in cls.folders:
             (folder / 'models' / name).mkdir(parents=True)
             (folder / 'models' / name / 'model.config').write_text(
-                '<model><sdf>model.sdf</sdf></model>')
+                '<model><sdf>model.sdf</sdf></model>'
+            )
         world = folder / 'flat.world'
         world.write_text(WORLD)
         path = f'{folder / "models"}:{os.environ.get("GAZEBO_MODEL_PATH", "")}'
@@ -92,19 +92,23 @@ class HostileNamesTest(unittest.TestCase):
         log = folder / 'gzweb.log'
         log.touch(mode=0o600)  # else it gets no token
         with log.open('wb') as output:
-            window = subprocess.Popen(['rosrun', 'gazebo_ros', 'gzweb', '--port', '0'],
-                                      stdout=output, stderr=output)
+            window = subprocess.Popen(
+                ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0'], stdout=output, stderr=output
+            )
         cls.addClassCleanup(window.wait)
         cls.addClassCleanup(window.kill)
         said = []
-        wait_until(lambda: said.append(re.search(r'the world is at (\S+)\n', log.read_text()))
-                   or said[-1], 'the address')
+        wait_until(
+            lambda: said.append(re.search(r'the world is at (\S+)\n', log.read_text())) or said[-1],
+            'the address',
+        )
         cls.address = said[-1][1]
         cls.listener = Listener()
         cls.addClassCleanup(cls.listener.close)
         here = f'127.0.0.1:{cls.listener.port}'
-        cls.driver = cls.enterClassContext(chromium(
-            SIZE, f'--host-resolver-rules=MAP {HOST} {here}, MAP *.{HOST} {here}'))
+        cls.driver = cls.enterClassContext(
+            chromium(SIZE, f'--host-resolver-rules=MAP {HOST} {here}, MAP *.{HOST} {here}')
+        )
         watch(cls.driver)
         cls.driver.get(cls.address + QUERY)
         wait_until(lambda: clock(cls.driver), 'the page')
@@ -115,7 +119,8 @@ class HostileNamesTest(unittest.TestCase):
         spawn = proxy('spawn_urdf_model', SpawnModel)
         cls.arms = {'arm 1': NAMES[::2], 'arm 2': NAMES[1::2]}
         texts = {name: arm(names) for name, names in cls.arms.items()} | {
-            name: body(name, of_link) for name, of_link in MODELS.items()}
+            name: body(name, of_link) for name, of_link in MODELS.items()
+        }
         for number, (name, text) in enumerate(texts.items()):
             answer = spawn(name, text, '', pose(2.0 * (number % 8), 2.0 * (number // 8), 0.1), '')
             assert answer.success, answer.status_message
@@ -124,8 +129,15 @@ class HostileNamesTest(unittest.TestCase):
 
     def setUp(self):
         self.hand = self.enterContext(Browser(self.address))
-        self.wait(lambda: self.hand.control(UPLOAD) and any(  # it is one of the page's browsers
-            one['type'] == 'SetCameraPositionMessage' for one in self.hand.messages), 'the page')
+        self.wait(
+            lambda: (
+                self.hand.control(UPLOAD)
+                and any(  # it is one of the page's browsers
+                    one['type'] == 'SetCameraPositionMessage' for one in self.hand.messages
+                )
+            ),
+            'the page',
+        )
         self.hand.press('escape')  # select nothing
         self.wait(lambda: not self.rows('\u2514'), 'no link listed')
 
@@ -139,9 +151,13 @@ class HostileNamesTest(unittest.TestCase):
 
     def rows(self, begin):
         """Return the buttons that can be seen and begin so, by their labels."""
-        return {props['label']: uuid for uuid, (kind, props) in self.hand.controls.items()
-                if kind == 'GuiButtonMessage' and props.get('visible', True)
-                and props['label'].startswith(begin)}
+        return {
+            props['label']: uuid
+            for uuid, (kind, props) in self.hand.controls.items()
+            if kind == 'GuiButtonMessage'
+            and props.get('visible', True)
+            and props['label'].startswith(begin)
+        }
 
     def select(self, model, link=None):
         """Click on a model in the list, and on one of its links."""
@@ -152,8 +168,13 @@ class HostileNamesTest(unittest.TestCase):
     def press(self, label):
         """Press a button when it can be seen; hidden ones may have had that label."""
         self.wait(lambda: label in self.rows(label), f'{label} in the list')
-        self.hand.send({'type': 'GuiUpdateMessage', 'uuid': self.rows(label)[label],
-                        'updates': {'value': True}})
+        self.hand.send(
+            {
+                'type': 'GuiUpdateMessage',
+                'uuid': self.rows(label)[label],
+                'updates': {'value': True},
+            }
+        )
 
     def wait(self, condition, what):
         """Wait for a condition, while the other connection to the page is read."""
@@ -166,6 +187,7 @@ class HostileNamesTest(unittest.TestCase):
         def shown():
             missing[:] = self.driver.execute_script(MISSING, wanted)
             return not missing
+
         try:
             self.wait(shown, 'texts')
         except AssertionError:
@@ -176,10 +198,19 @@ class HostileNamesTest(unittest.TestCase):
         names = [plain(name) for name in names]
         self.wait(lambda: set(names) <= set(self.options(label)), f'the list of {label}')
         fields = []
-        self.wait(lambda: fields.extend(
-            one for one in self.driver.find_elements(
-                By.XPATH, f'//label[normalize-space()="{label}"]/following::input[1]')
-            if one.is_displayed()) or fields, label)
+        self.wait(
+            lambda: (
+                fields.extend(
+                    one
+                    for one in self.driver.find_elements(
+                        By.XPATH, f'//label[normalize-space()="{label}"]/following::input[1]'
+                    )
+                    if one.is_displayed()
+                )
+                or fields
+            ),
+            label,
+        )
         fields[0].click()
         try:
             self.wait_shown(*names, said=str)
@@ -188,9 +219,12 @@ class HostileNamesTest(unittest.TestCase):
 
     def options(self, label):
         """Return what can be chosen in a field."""
-        return [one for kind, props in self.hand.controls.values()
-                if props.get('label') == label and kind == 'GuiDropdownMessage'
-                for one in props['options']]
+        return [
+            one
+            for kind, props in self.hand.controls.values()
+            if props.get('label') == label and kind == 'GuiDropdownMessage'
+            for one in props['options']
+        ]
 
     def open_tab(self, name):
         self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title="{name}"]').click()
@@ -207,10 +241,17 @@ class HostileNamesTest(unittest.TestCase):
         for name, texts in self.arms.items():
             self.select(name)
             self.wait_shown(
-                *(f'{text}: revolute, ' for text in texts), *(f'\u2514 {text}' for text in texts),
-                *(f'{text}_collision' for text in texts), *(f'{text} imu: imu' for text in texts),
-                *(f"{what} '{text[:40]}" for what in ('plugin', 'sonar')  # not spawned with it
-                  for text in texts if text.isprintable()))
+                *(f'{text}: revolute, ' for text in texts),
+                *(f'\u2514 {text}' for text in texts),
+                *(f'{text}_collision' for text in texts),
+                *(f'{text} imu: imu' for text in texts),
+                *(
+                    f"{what} '{text[:40]}"
+                    for what in ('plugin', 'sonar')  # not spawned with it
+                    for text in texts
+                    if text.isprintable()
+                ),
+            )
 
     def test_what_is_edited(self):
         self.open_tab('Edit')
@@ -229,8 +270,10 @@ class HostileNamesTest(unittest.TestCase):
         self.open_tab('Drive')
         drive = [topic(text, 'drive') for text in TEXTS]
         joints = [topic(text, 'joint') for text in TEXTS[:SLIDERS]]
-        listening = [*(rospy.Subscriber(name, Twist, id) for name in drive),
-                     *(rospy.Subscriber(name, Float64, id) for name in joints)]
+        listening = [
+            *(rospy.Subscriber(name, Twist, id) for name in drive),
+            *(rospy.Subscriber(name, Float64, id) for name in joints),
+        ]
         self.wait_offered('Topic', drive)
         self.wait(lambda: CONTROLLERS in self.options('Of'), 'topics of joints')
         self.hand.choose('Of', CONTROLLERS)
@@ -247,9 +290,16 @@ class HostileNamesTest(unittest.TestCase):
         self.hand.choose('/bumper', True)
         self.wait(contacts.get_num_connections, 'a reader')
         for text in TEXTS:
-            message = ContactsState(states=[ContactState(
-                collision1_name=f'{text} one', collision2_name=f'{text} other',
-                contact_positions=[Vector3()], contact_normals=[Vector3()])])
+            message = ContactsState(
+                states=[
+                    ContactState(
+                        collision1_name=f'{text} one',
+                        collision2_name=f'{text} other',
+                        contact_positions=[Vector3()],
+                        contact_normals=[Vector3()],
+                    )
+                ]
+            )
             message.header.frame_id = f'{text} frame'
             contacts.publish(message)
             self.wait_shown(f'{text} one and {text} other: ', f"its frame '{text} frame'")
@@ -262,7 +312,7 @@ class HostileNamesTest(unittest.TestCase):
         talking = [rospy.Publisher(name, Float64, queue_size=1) for name in topics]
         self.wait_offered('Topic', topics)
         for begin in range(0, len(TEXTS), CURVES):
-            curves = [f'{name}/data' for name in topics[begin:begin + CURVES]]
+            curves = [f'{name}/data' for name in topics[begin : begin + CURVES]]
             for curve in curves:
                 self.hand.choose('Curve', curve)
                 self.hand.click('Add curve')
@@ -283,8 +333,11 @@ class HostileNamesTest(unittest.TestCase):
         parameters = [topic(text, 'parameter') for text in TEXTS]
         for name in parameters:
             rospy.get_master().target.setParam(rospy.get_name(), name, '<robot name="a"/>')
-        for label, names in (('Light', NAMES), ('Model path', self.folders),
-                             ('Parameter', parameters)):
+        for label, names in (
+            ('Light', NAMES),
+            ('Model path', self.folders),
+            ('Parameter', parameters),
+        ):
             self.wait_offered(label, names)
         for text in NAMES:
             proxy('delete_light', DeleteLight)(text)
@@ -293,8 +346,11 @@ class HostileNamesTest(unittest.TestCase):
         for group in GROUPS:
             name = f'{"".join(group)}.urdf'
             self.upload(name, b'\0\xff', f"'{name}' is not text; upload a URDF, xacro or SDF")
-        self.upload('name.urdf', body(REFUSED, 'link').encode(),
-                    'contains a line break or another control character')
+        self.upload(
+            'name.urdf',
+            body(REFUSED, 'link').encode(),
+            'contains a line break or another control character',
+        )
 
     def upload(self, name, content, sentence):
         """Upload a file, wait for what is said of it, and close that."""
@@ -306,6 +362,7 @@ class HostileNamesTest(unittest.TestCase):
                 self.hand.upload(UPLOAD, name, content)
             tries += 1
             return not self.driver.execute_script(MISSING, [plain(sentence)])
+
         self.wait(is_shown, sentence)
         self.driver.execute_script(CLOSE)  # at most five are shown at once
 
@@ -349,7 +406,8 @@ class HostileNamesTest(unittest.TestCase):
         listener = Listener()
         self.addCleanup(listener.close)
         self.driver.execute_script(
-            INSERT, [text.replace(HOST, f'127.0.0.1:{listener.port}') for text in MARKUP])
+            INSERT, [text.replace(HOST, f'127.0.0.1:{listener.port}') for text in MARKUP]
+        )
         wait_until(lambda: len(foreign()) > MOST_OF_THEM, 'markup')
         self.makes_markup = True  # of which the console has errors
         return listener
@@ -366,6 +424,7 @@ class HostileNamesTest(unittest.TestCase):
         finally:
             self.driver.close()
             self.driver.switch_to.window(first)
+
 
 if __name__ == '__main__':
     rospy.init_node('hostile_names', disable_rostime=True)

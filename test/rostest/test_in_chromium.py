@@ -60,7 +60,7 @@ EYE, PITCH, YAW = (1.193, -1.05, 1.188), 0.43633, 2.3911  # [m], [rad], [rad]
 WORLD = f"""<sdf version="1.6"><world name="default">
   <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
   <gui><camera name="user_camera">
-    <pose>{" ".join(map(str, EYE))} 0 {PITCH} {YAW}</pose>
+    <pose>{' '.join(map(str, EYE))} 0 {PITCH} {YAW}</pose>
   </camera></gui>
 </world></sdf>"""
 # The picture is of the scene only, and of as many pixels however slow the processor is.
@@ -118,20 +118,24 @@ class Page:
             if monotonic() > end:
                 raise AssertionError(f'not within {SLOW:g} s: {model} selected')
             ActionChains(self.driver).move_to_element_with_offset(
-                self.scene(), *eye.pixel(point)).click().pause(1.0).perform()
+                self.scene(), *eye.pixel(point)
+            ).click().pause(1.0).perform()
 
     def wait_for_red(self, eye, point, what):
         """Wait until something red, like the handle along x, is seen at a point [m]."""
         scene = self.scene().rect
-        x, y = np.add(eye.pixel(point), (
-            round(scene['x'] + scene['width'] / 2.0), round(scene['y'] + scene['height'] / 2.0)))
+        x, y = np.add(
+            eye.pixel(point),
+            (round(scene['x'] + scene['width'] / 2.0), round(scene['y'] + scene['height'] / 2.0)),
+        )
         end = monotonic() + SLOW
-        while not np.any((red := self.red())[y - 4:y + 5, x - 4:x + 5]):
+        while not np.any((red := self.red())[y - 4 : y + 5, x - 4 : x + 5]):
             if monotonic() > end:
                 rows, columns = np.nonzero(red)
                 raise AssertionError(
                     f'not within {SLOW:g} s: {what} at ({x}, {y}); {len(rows)} red pixels, around '
-                    f'({np.mean(columns):.0f}, {np.mean(rows):.0f}); the page: {self.text()!r}')
+                    f'({np.mean(columns):.0f}, {np.mean(rows):.0f}); the page: {self.text()!r}'
+                )
 
     def red(self):
         """Return which pixels (rows, columns) are red, now."""
@@ -143,9 +147,13 @@ class Page:
 
     def drag(self, eye, start, end):
         """Press the button at a point [m] and move to another; do not release it."""
-        (ActionChains(self.driver)
-         .move_to_element_with_offset(self.scene(), *eye.pixel(start)).click_and_hold()
-         .move_to_element_with_offset(self.scene(), *eye.pixel(end)).perform())
+        (
+            ActionChains(self.driver)
+            .move_to_element_with_offset(self.scene(), *eye.pixel(start))
+            .click_and_hold()
+            .move_to_element_with_offset(self.scene(), *eye.pixel(end))
+            .perform()
+        )
 
     def upload(self, name, text):
         file = self.driver.find_element(By.CSS_SELECTOR, 'input[type=file]')
@@ -181,8 +189,9 @@ class Eye:
     """Where points of the world are on the page."""
 
     def __init__(self):
-        ahead = np.array([math.cos(PITCH) * math.cos(YAW), math.cos(PITCH) * math.sin(YAW),
-                          -math.sin(PITCH)])
+        ahead = np.array(
+            [math.cos(PITCH) * math.cos(YAW), math.cos(PITCH) * math.sin(YAW), -math.sin(PITCH)]
+        )
         right = np.cross(ahead, (0.0, 0.0, 1.0))
         right /= np.linalg.norm(right)
         self.axes = np.array([right, np.cross(ahead, right), ahead])  # right, down, ahead
@@ -195,7 +204,6 @@ class Eye:
 
 
 class ChromiumTest(unittest.TestCase):
-
     steps = SETTLED
     lost = ''  # what the console says of a connection that ended with its window
 
@@ -216,8 +224,11 @@ class ChromiumTest(unittest.TestCase):
         cls.window = window = Terminal('rosrun', 'gazebo_ros', 'gzweb', '--port', port)
         cls.addClassCleanup(window.close)
         said = []
-        wait_until(lambda: said.append(re.search(r'the world is at (\S+)', window.shown()))
-                   or said[-1], 'the address', SLOW)
+        wait_until(
+            lambda: said.append(re.search(r'the world is at (\S+)', window.shown())) or said[-1],
+            'the address',
+            SLOW,
+        )
         return said[-1][1]
 
     @classmethod
@@ -243,7 +254,8 @@ class ChromiumTest(unittest.TestCase):
             proxy('delete_model', DeleteModel)(name)
         proxy('reset_simulation', Empty)()
         spawned = proxy('spawn_urdf_model', SpawnModel)(
-            'rosbots', rospy.get_param('robot_description'), '', pose(), '')
+            'rosbots', rospy.get_param('robot_description'), '', pose(), ''
+        )
         assert spawned.success, spawned.status_message
         cls.steps += 1  # another number than the page has shown
         proxy('step', Step)(cls.steps)
@@ -259,8 +271,10 @@ class ChromiumTest(unittest.TestCase):
         cls.server.__exit__()
 
     def tearDown(self):
-        self.assertEqual([fault for fault in faults(self.page.driver)
-                          if not (self.lost and self.lost in fault)], [])
+        self.assertEqual(
+            [fault for fault in faults(self.page.driver) if not (self.lost and self.lost in fault)],
+            [],
+        )
 
     def test_second_page_shows_the_robot_and_asks_nobody_else(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -276,21 +290,31 @@ class ChromiumTest(unittest.TestCase):
             asked = self.addresses(json.loads(log.read_text()))
         host = urlsplit(self.address).netloc
         self.assertTrue(any(one.startswith(f'ws://{host}/') for one in asked), asked)
-        self.assertEqual([one for one in asked if not re.match(
-            f'(http|ws)://{host}/|data:|blob:', one)], [])
+        self.assertEqual(
+            [one for one in asked if not re.match(f'(http|ws)://{host}/|data:|blob:', one)], []
+        )
 
     def wait_for_the_robot(self, page):
         reference = np.asarray(Image.open(REFERENCE), float)
-        wait_until(lambda: structural_similarity(page.picture()[ROBOT], reference) >= ALIKE,
-                   f'a picture that is like the reference by {ALIKE}', SLOW)
+        wait_until(
+            lambda: structural_similarity(page.picture()[ROBOT], reference) >= ALIKE,
+            f'a picture that is like the reference by {ALIKE}',
+            SLOW,
+        )
 
     def addresses(self, log):
         """Return what the page, its parts included, has asked for, by Chromium's network log."""
         begun = log['constants']['logEventTypes']['URL_REQUEST_START_JOB']
-        events = [event['params'] for event in log['events']
-                  if event['type'] == begun and 'url' in event.get('params', {})]
-        return {params['url'] for params in events
-                if params.get('initiator', '').startswith(('http', 'null'))}
+        events = [
+            event['params']
+            for event in log['events']
+            if event['type'] == begun and 'url' in event.get('params', {})
+        ]
+        return {
+            params['url']
+            for params in events
+            if params.get('initiator', '').startswith(('http', 'null'))
+        }
 
     def test_buttons_act_on_the_clock(self):
         self.page.click('Play')
@@ -307,8 +331,10 @@ class ChromiumTest(unittest.TestCase):
     def test_chosen_tab_has_two_thirds_of_the_panel(self):
         with chromium(DESKTOP) as driver:
             page = Page(driver, self.address)
-            panel, strip = (driver.find_element(By.CSS_SELECTOR, selector).rect for selector in (
-                '[data-testid=floating-panel]', '[role=tablist]'))
+            panel, strip = (
+                driver.find_element(By.CSS_SELECTOR, selector).rect
+                for selector in ('[data-testid=floating-panel]', '[role=tablist]')
+            )
             below = panel['y'] + panel['height'] - strip['y'] - strip['height']
             self.assertGreaterEqual(below, 2.0 / 3.0 * panel['height'])
             scene = page.scene().rect

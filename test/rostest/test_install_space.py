@@ -21,13 +21,16 @@ OURS = ('ROS_PACKAGE_PATH', 'PYTHONPATH', 'CMAKE_PREFIX_PATH', 'LD_LIBRARY_PATH'
 
 
 class InstallSpaceTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.root = Path(tempfile.mkdtemp())
         subprocess.run(
-            ['make', '-C', str(BUILD), 'install'], env={**os.environ, 'DESTDIR': str(cls.root)},
-            stdout=subprocess.DEVNULL, check=True, timeout=PATIENCE)
+            ['make', '-C', str(BUILD), 'install'],
+            env={**os.environ, 'DESTDIR': str(cls.root)},
+            stdout=subprocess.DEVNULL,
+            check=True,
+            timeout=PATIENCE,
+        )
         (cls.setup,) = cls.root.rglob('install/setup.bash')
 
     @classmethod
@@ -38,20 +41,32 @@ class InstallSpaceTest(unittest.TestCase):
         """Run a command in an environment with the install space and without the source tree."""
         environment = {name: value for name, value in os.environ.items() if name not in OURS}
         return subprocess.Popen(
-            ['bash', '-c', f'. "{self.setup}" && exec {command}'], env=environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+            ['bash', '-c', f'. "{self.setup}" && exec {command}'],
+            env=environment,
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
 
     def output(self, command):
         printed, _ = self.start(command).communicate(timeout=PATIENCE)
         return printed.strip()
 
     def test_packages_and_modules_are_found_in_the_install_space(self):
-        for package in ('rosbots_description', 'rosbots_simulator', 'gazebo_ros', 'gazebo_msgs',
-                        'xacro'):
+        for package in (
+            'rosbots_description',
+            'rosbots_simulator',
+            'gazebo_ros',
+            'gazebo_msgs',
+            'xacro',
+        ):
             self.assertTrue(self.output(f'rospack find {package}').startswith(str(self.root)))
-        code = 'import rosbots_description, gazebo_ros.gazebo_interface as g; ' \
-            'import rosbots_simulator.cli.gzclient as c; ' \
+        code = (
+            'import rosbots_description, gazebo_ros.gazebo_interface as g; '
+            'import rosbots_simulator.cli.gzclient as c; '
             'print(rosbots_description.__file__, g.__file__, c.__file__)'
+        )
         for path in self.output(f'python3 -c "{code}"').split():
             self.assertTrue(path.startswith(str(self.root)), path)
 
@@ -61,8 +76,9 @@ class InstallSpaceTest(unittest.TestCase):
         self.assertTrue(config.startswith(str(self.root)), config)
         self.assertTrue(Path(config).is_file(), config)
         media = self.output('rospack plugins --attrib=ogre_media_path media_export')
-        (folder,) = (line.split()[1] for line in media.splitlines()
-                     if line.startswith('rosbots_simulator '))
+        (folder,) = (
+            line.split()[1] for line in media.splitlines() if line.startswith('rosbots_simulator ')
+        )
         self.assertTrue(folder.startswith(str(self.root)), folder)
         self.assertTrue(Path(folder, 'sunlit.material').is_file(), folder)
 

@@ -28,10 +28,16 @@ def environment():
     """Return the environment of a reader who has typed `./rosbots shell`."""
     outside = {name: os.environ[name] for name in OF_A_READER if name in os.environ}
     outside |= {'PATH': '/usr/local/bin:/usr/bin:/bin', 'TERM': 'dumb'}
-    shown = subprocess.run([ROOT / 'rosbots', 'shell', '-c', 'env -0'], env=outside, text=True,
-                           stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=LIMIT,
-                           check=True).stdout
-    variables = shown[shown.rindex('==> ') if '==> ' in shown else 0:]
+    shown = subprocess.run(
+        [ROOT / 'rosbots', 'shell', '-c', 'env -0'],
+        env=outside,
+        text=True,
+        stdout=subprocess.PIPE,
+        stdin=subprocess.DEVNULL,
+        timeout=LIMIT,
+        check=True,
+    ).stdout
+    variables = shown[shown.rindex('==> ') if '==> ' in shown else 0 :]
     return dict(variable.split('=', 1) for variable in variables.split('\0') if variable)
 
 
@@ -58,38 +64,59 @@ class Reader:
 
     def _start_master(self):
         """Start a ROS master, for roslaunch waits only 10 s for one of its own."""
-        self._master = subprocess.Popen(['rosmaster', '--core', '-p', str(self._port)],
-                                        env=self._environment, stdout=subprocess.DEVNULL)
+        self._master = subprocess.Popen(
+            ['rosmaster', '--core', '-p', str(self._port)],
+            env=self._environment,
+            stdout=subprocess.DEVNULL,
+        )
         address = self._environment['ROS_MASTER_URI']
         wait_until(lambda: rosgraph.is_master_online(address), 'the ROS master', LIMIT)
 
     def _open(self, step):
         if self._master is None:
             self._start_master()
-        terminal = Terminal('bash', '-c', f'exec {step.text}', cwd=self.folder,
-                            env=self._environment)
+        terminal = Terminal(
+            'bash', '-c', f'exec {step.text}', cwd=self.folder, env=self._environment
+        )
         self._terminals.append((step, terminal))
         self._see(step, terminal)
 
     def _see(self, step, terminal):
         """Wait until a terminal has shown what the page says."""
-        wait_until(lambda: not missing(step.expected, terminal.shown()) or self._ended(),
-                   f'line {step.line}: {step.expected}', LIMIT)
+        wait_until(
+            lambda: not missing(step.expected, terminal.shown()) or self._ended(),
+            f'line {step.line}: {step.expected}',
+            LIMIT,
+        )
         self._compare(step, terminal.shown())
 
     def _ended(self):
         """Return the steps in terminals of their own whose programs have failed."""
-        return [(step, terminal.shown()) for step, terminal in self._terminals
-                if terminal.process.poll()]
+        return [
+            (step, terminal.shown())
+            for step, terminal in self._terminals
+            if terminal.process.poll()
+        ]
 
     def _type(self, step):
-        with tempfile.TemporaryFile('w+') as output, subprocess.Popen(
-                ['bash', '-ec', step.text], cwd=self.folder, env=self._environment,
-                stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
-                start_new_session=True) as process:
+        with (
+            tempfile.TemporaryFile('w+') as output,
+            subprocess.Popen(
+                ['bash', '-ec', step.text],
+                cwd=self.folder,
+                env=self._environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            ) as process,
+        ):
             try:
-                wait_until(lambda: process.poll() is not None or self._ended(),
-                           f'the end of {step.text}', LIMIT)
+                wait_until(
+                    lambda: process.poll() is not None or self._ended(),
+                    f'the end of {step.text}',
+                    LIMIT,
+                )
                 if self._ended():
                     raise AssertionError(f'before the end of {step.text}: {self._ended()}')
             finally:
@@ -99,7 +126,8 @@ class Reader:
             shown = output.read()
         if (process.returncode != 0) != step.fails:
             raise AssertionError(
-                f'line {step.line}: exit code {process.returncode} of {step.text}{shown}')
+                f'line {step.line}: exit code {process.returncode} of {step.text}{shown}'
+            )
         self._compare(step, shown)
 
     @staticmethod
@@ -113,8 +141,11 @@ class Reader:
         for step, terminal in reversed(self._terminals):
             if terminal.process.poll() is None:
                 os.killpg(terminal.process.pid, signal.SIGINT)
-            wait_until(lambda terminal=terminal: terminal.process.poll() is not None,
-                       f'exit of {step.text}', LIMIT)
+            wait_until(
+                lambda terminal=terminal: terminal.process.poll() is not None,
+                f'exit of {step.text}',
+                LIMIT,
+            )
             shown.append(terminal.shown())
         return shown
 
@@ -132,7 +163,6 @@ class Reader:
 
 
 class LessonsTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.variables = environment()
@@ -148,8 +178,10 @@ class LessonsTest(unittest.TestCase):
 
 def add_test(lesson):
     """Give LessonsTest a test of a lesson."""
+
     def test(self):
         self.follow(lesson)
+
     setattr(LessonsTest, f'test_{lesson.stem}', test)
 
 

@@ -27,7 +27,6 @@ def pieces():
 
 
 class LineFollowerTest(ExampleNodeTest):
-
     def laps(self):
         """Return how often the robot has gone round, counter-clockwise."""
         _, x, y = self.axle_track(every=50).T
@@ -44,8 +43,10 @@ class LineFollowerTest(ExampleNodeTest):
         track = self.axle_track()[:, None, 1:] - centres
         along = np.clip(np.sum(track * directions, axis=2), -lengths / 2, lengths / 2)
         distances = np.hypot(*np.moveaxis(track - along[..., None] * directions, 2, 0))
-        print(f'{self.laps():.2f} laps in {self.seconds():.1f} s, '
-              f'at most {distances.min(axis=1).max():.3f} m from the line')
+        print(
+            f'{self.laps():.2f} laps in {self.seconds():.1f} s, '
+            f'at most {distances.min(axis=1).max():.3f} m from the line'
+        )
         self.assertLess(distances.min(axis=1).max(), CLOSE)
         self.assertEqual(set(distances.argmin(axis=1)), set(range(len(centres))))
 

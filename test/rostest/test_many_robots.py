@@ -15,14 +15,16 @@ from tf2_msgs.msg import TFMessage
 
 ROBOTS = [f'robot_{i}' for i in range(20)]
 OWN_TOPICS = ('odom', 'joint_states', 'cmd_vel')
-EDGES = {('odom', 'base_link'), ('base_footprint', 'wheel_left_link'),
-         ('base_footprint', 'wheel_right_link')}
+EDGES = {
+    ('odom', 'base_link'),
+    ('base_footprint', 'wheel_left_link'),
+    ('base_footprint', 'wheel_right_link'),
+}
 DRIVEN = 'robot_7'
 STILL = 0.1  # bound of the motion of robots without commands [m]
 
 
 class ManyRobotsTest(unittest.TestCase):
-
     def setUp(self):
         self.delete = proxy('delete_model', DeleteModel)
         self.model_state = proxy('get_model_state', GetModelState)
@@ -49,8 +51,9 @@ class ManyRobotsTest(unittest.TestCase):
             edges.update((t.header.frame_id, t.child_frame_id) for t in message.transforms)
 
         subscriber = rospy.Subscriber('/tf', TFMessage, note)
-        expected = {(f'{robot}/{parent}', f'{robot}/{child}')
-                    for robot in ROBOTS for parent, child in EDGES}
+        expected = {
+            (f'{robot}/{parent}', f'{robot}/{child}') for robot in ROBOTS for parent, child in EDGES
+        }
         wait_until(lambda: expected <= edges, 'the frames of all robots')
         subscriber.unregister()
         self.assertEqual(edges, expected)
@@ -61,8 +64,10 @@ class ManyRobotsTest(unittest.TestCase):
         before = {robot: self._x_of(robot) for robot in ROBOTS}
         self._drive(DRIVEN)
         wait_until(lambda: heard and heard[-1].twist.twist.linear.x > 0.1, 'its odometry')
-        self.assertEqual((heard[-1].header.frame_id, heard[-1].child_frame_id),
-                         (f'{DRIVEN}/odom', f'{DRIVEN}/base_link'))
+        self.assertEqual(
+            (heard[-1].header.frame_id, heard[-1].child_frame_id),
+            (f'{DRIVEN}/odom', f'{DRIVEN}/base_link'),
+        )
         subscriber.unregister()
         for robot in set(ROBOTS) - {DRIVEN}:
             self.assertAlmostEqual(self._x_of(robot), before[robot], delta=STILL)

@@ -39,14 +39,18 @@ def obstacle_distance(points):
 def outline():
     """Return points on the robot's outline, at most 2 cm apart [m]."""
     share = np.linspace(0, 1, 56)
-    return np.concatenate([
-        np.concatenate([np.stack([x0 + share * (x1 - x0), 0 * share + y], 1) for y in (y0, y1)]
-                       + [np.stack([0 * share + x, y0 + share * (y1 - y0)], 1) for x in (x0, x1)])
-        for x0, x1, y0, y1 in OUTLINE])
+    return np.concatenate(
+        [
+            np.concatenate(
+                [np.stack([x0 + share * (x1 - x0), 0 * share + y], 1) for y in (y0, y1)]
+                + [np.stack([0 * share + x, y0 + share * (y1 - y0)], 1) for x in (x0, x1)]
+            )
+            for x0, x1, y0, y1 in OUTLINE
+        ]
+    )
 
 
 class MapWhileDrivingTest(ExampleNodeTest):
-
     def test_the_robot_wanders_without_touching_and_the_map_is_right(self):
         maps = []
         rospy.Subscriber('/map', OccupancyGrid, maps.append)
@@ -80,8 +84,9 @@ class MapWhileDrivingTest(ExampleNodeTest):
         track = np.array(self.track)
         cos, sin = np.cos(track[:, 3, None]), np.sin(track[:, 3, None])
         x, y = outline().T
-        touched = np.stack([track[:, 1, None] + x * cos - y * sin,
-                            track[:, 2, None] + x * sin + y * cos], axis=-1)
+        touched = np.stack(
+            [track[:, 1, None] + x * cos - y * sin, track[:, 2, None] + x * sin + y * cos], axis=-1
+        )
         gap = obstacle_distance(touched[::5]).min()
         way = np.hypot(*np.diff(self.axle_track()[:, 1:], axis=0).T).sum()
         print(f'{way:.1f} m in {self.seconds():.1f} s, {gap:.3f} m from the nearest obstacle')
@@ -94,14 +99,22 @@ class MapWhileDrivingTest(ExampleNodeTest):
         cells = np.array(message.data).reshape(info.height, info.width)
         row, column = np.indices(cells.shape)
         origin = info.origin.position
-        distance = obstacle_distance(np.stack([
-            origin.x + (column + 0.5) * info.resolution,
-            origin.y + (row + 0.5) * info.resolution], axis=-1))
+        distance = obstacle_distance(
+            np.stack(
+                [
+                    origin.x + (column + 0.5) * info.resolution,
+                    origin.y + (row + 0.5) * info.resolution,
+                ],
+                axis=-1,
+            )
+        )
         occupied, free = cells > OCCUPIED, (cells >= 0) & (cells < FREE)
         right = np.mean(distance[occupied] < info.resolution)
         clear = np.mean(distance[free] > 0)
-        print(f'{np.count_nonzero(occupied)} cells occupied, {right:.1%} of them at an obstacle; '
-              f'{np.count_nonzero(free)} cells free, {clear:.2%} of them outside obstacles')
+        print(
+            f'{np.count_nonzero(occupied)} cells occupied, {right:.1%} of them at an obstacle; '
+            f'{np.count_nonzero(free)} cells free, {clear:.2%} of them outside obstacles'
+        )
         self.assertGreater(right, 0.95)
         self.assertGreater(clear, 0.99)
         self.assertGreater(np.count_nonzero(occupied), 200)

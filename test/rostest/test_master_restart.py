@@ -31,7 +31,6 @@ LATE = {'/late/odom', '/late/joint_states'}
 
 
 class MasterRestartTest(unittest.TestCase):
-
     def setUp(self):
         self.master = MasterProcess()
         address = self.master.__enter__()
@@ -44,20 +43,29 @@ class MasterRestartTest(unittest.TestCase):
         wait_until(lambda: self._of_server()[0] >= LAST_TOPICS, 'dynamic_reconfigure')
 
     def _spawn(self, name, xml):
-        with ServerProcess('-urdf', '-stdin', '-model', name, program='spawn_model',
-                           master=self.server.master) as client:
+        with ServerProcess(
+            '-urdf', '-stdin', '-model', name, program='spawn_model', master=self.server.master
+        ) as client:
             printed, _ = client.process.communicate(xml, timeout=2 * DEADLINE)
             self.assertEqual(client.process.returncode, 0, printed)
 
     def _run(self, *command):
         """Run a ROS program with the server's master; return what it prints."""
-        return subprocess.run(command, env=self.server.environment, capture_output=True, text=True,
-                              timeout=DEADLINE, check=True).stdout
+        return subprocess.run(
+            command,
+            env=self.server.environment,
+            capture_output=True,
+            text=True,
+            timeout=DEADLINE,
+            check=True,
+        ).stdout
 
     def _of_server(self):
         """Return the server's registrations: published topics, subscribed topics, services."""
-        return [{name for name, nodes in entries if '/gazebo' in nodes}
-                for entries in self.graph.getSystemState()]
+        return [
+            {name for name, nodes in entries if '/gazebo' in nodes}
+            for entries in self.graph.getSystemState()
+        ]
 
     def _client(self, service, service_class):
         """Return a function that calls the service on a persistent connection."""
@@ -79,8 +87,11 @@ class MasterRestartTest(unittest.TestCase):
         """Kill the master, and spawn a robot with its own topics."""
         spawn = self._client('spawn_urdf_model', SpawnModel)
         self.master.kill()
-        response = spawn(SpawnModelRequest(
-            'late', rospy.get_param('robot_description'), '/late', pose(y=5.0), ''))
+        response = spawn(
+            SpawnModelRequest(
+                'late', rospy.get_param('robot_description'), '/late', pose(y=5.0), ''
+            )
+        )
         self.assertTrue(response.success, response.status_message)
 
     def _window(self):
@@ -94,8 +105,10 @@ class MasterRestartTest(unittest.TestCase):
         return browser
 
     def _is_shown(self):
-        return any(topic == '/gazebo/view/motion' and '/gzweb' in nodes
-                   for topic, nodes in self.graph.getSystemState()[1])
+        return any(
+            topic == '/gazebo/view/motion' and '/gzweb' in nodes
+            for topic, nodes in self.graph.getSystemState()[1]
+        )
 
     def test_simulator_and_window_register_with_a_new_master(self):
         before, now = self._of_server(), self._time_query()
@@ -132,8 +145,10 @@ class MasterRestartTest(unittest.TestCase):
         topics_out, topics_in, services = self._of_server()
         self._spawn_late()
         self.master.start()
-        wait_until(lambda: self._of_server() == [topics_out | LATE, topics_in, services],
-                   'the topics of both robots, and all services')
+        wait_until(
+            lambda: self._of_server() == [topics_out | LATE, topics_in, services],
+            'the topics of both robots, and all services',
+        )
         self._assert_it_works()
 
     def test_settings_changed_without_a_master_are_on_the_next(self):
@@ -149,8 +164,14 @@ class MasterRestartTest(unittest.TestCase):
 
     def _assert_it_works(self):
         self.assertIn('rosbots', self.server.world()['model_names'])
-        self._run('rostopic', 'pub', '-1', '/part2_cmr/cmd_vel', 'geometry_msgs/Twist',
-                  '{linear: {x: 0.3}}')
+        self._run(
+            'rostopic',
+            'pub',
+            '-1',
+            '/part2_cmr/cmd_vel',
+            'geometry_msgs/Twist',
+            '{linear: {x: 0.3}}',
+        )
         wait_until(lambda: self._x() > 0.1, 'a drive')
         self.assertIn('odom', self._run('rostopic', 'echo', '-n1', '/odom'))
         self._spawn('box', BOX)

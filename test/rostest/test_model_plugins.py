@@ -18,10 +18,14 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
 WHEELS = [f'{side}_{end}_joint' for end in ('front', 'rear') for side in ('left', 'right')]
-TOLD = {'/gt': ('world', 'base_footprint', 20), '/gt_off': ('map', 'base_footprint', 20),
-        '/gt_noise': ('world', 'base_footprint', 20), '/gt_lumped': ('world', 'base_footprint', 20),
-        '/gt_wheel': ('base_footprint', 'left_front_link', 34),
-        '/gt_default': ('world', 'base_footprint', 1)}
+TOLD = {
+    '/gt': ('world', 'base_footprint', 20),
+    '/gt_off': ('map', 'base_footprint', 20),
+    '/gt_noise': ('world', 'base_footprint', 20),
+    '/gt_lumped': ('world', 'base_footprint', 20),
+    '/gt_wheel': ('base_footprint', 'left_front_link', 34),
+    '/gt_default': ('world', 'base_footprint', 1),
+}
 HALF = rospy.Duration(0.5)
 
 
@@ -37,7 +41,6 @@ def has_period(messages, period):
 
 
 class ModelPluginsTest(SimulatorTest):
-
     def spawn_recorded(self, name, topics, z=0.0):
         """Spawn a robot and assert that it has these topics."""
         before = topics_of()
@@ -53,8 +56,9 @@ class ModelPluginsTest(SimulatorTest):
         return publisher.publish
 
     def test_true_poses_and_joint_states_have_gazebos_frames_and_stamps(self):
-        self.spawn_recorded('skid4_p3d',
-                   {'/cmd_vel', '/odom', '/tf', '/joint_states', '/gt_badframe', *TOLD})
+        self.spawn_recorded(
+            'skid4_p3d', {'/cmd_vel', '/odom', '/tf', '/joint_states', '/gt_badframe', *TOLD}
+        )
         received = {topic: self.collect(topic, Odometry) for topic in TOLD}
         nothing = self.collect('/gt_badframe', Odometry)
         states = self.collect('/joint_states', JointState)
@@ -66,8 +70,9 @@ class ModelPluginsTest(SimulatorTest):
             message = received[topic][-1]
             self.assertEqual((message.header.frame_id, message.child_frame_id), (frame, child))
             self.assertEqual(message._connection_header.get('latching', '0'), '0')
-            wait_until(lambda t=topic, p=expected: has_period(received[t], p),
-                       f'the period of {topic}')
+            wait_until(
+                lambda t=topic, p=expected: has_period(received[t], p), f'the period of {topic}'
+            )
             variance = 1e-4 if topic == '/gt_noise' else 0.0
             for covariance in (message.pose.covariance, message.twist.covariance):
                 for i, number in enumerate(covariance):
@@ -82,31 +87,54 @@ class ModelPluginsTest(SimulatorTest):
     def check_poses(self, received):
         """Compare messages of almost equal stamps; the robot drives a left curve."""
         twist = received['/gt'].twist.twist
-        yaw = 2.0 * math.atan2(received['/gt'].pose.pose.orientation.z,
-                               received['/gt'].pose.pose.orientation.w)
+        yaw = 2.0 * math.atan2(
+            received['/gt'].pose.pose.orientation.z, received['/gt'].pose.pose.orientation.w
+        )
         forward = math.cos(yaw) * twist.linear.x + math.sin(yaw) * twist.linear.y
         self.assertAlmostEqual(forward, 0.4, delta=0.02)
-        self.assertAlmostEqual(received['/gt_off'].pose.pose.position.z - 3.0,
-                               received['/gt'].pose.pose.position.z, delta=1e-3)
-        self.assertAlmostEqual(received['/gt_lumped'].pose.pose.position.z - 0.13,
-                               received['/gt'].pose.pose.position.z, delta=1e-3)
+        self.assertAlmostEqual(
+            received['/gt_off'].pose.pose.position.z - 3.0,
+            received['/gt'].pose.pose.position.z,
+            delta=1e-3,
+        )
+        self.assertAlmostEqual(
+            received['/gt_lumped'].pose.pose.position.z - 0.13,
+            received['/gt'].pose.pose.position.z,
+            delta=1e-3,
+        )
         wheel = received['/gt_wheel'].pose.pose.position
         for found, expected in ((wheel.x, 0.18), (wheel.y, 0.22), (wheel.z, 0.1)):
             self.assertAlmostEqual(found, expected, delta=1e-3)
 
     def test_trajectory_is_played_point_by_point(self):
-        self.spawn_recorded('arm_ft', {'/joint_states', '/set_joint_trajectory', '/ft_elbow',
-                              '/ft_shoulder'})
+        self.spawn_recorded(
+            'arm_ft', {'/joint_states', '/set_joint_trajectory', '/ft_elbow', '/ft_shoulder'}
+        )
         states = self.collect('/joint_states', JointState)
         play = self.sender('/set_joint_trajectory', JointTrajectory)
         for frame in ('', 'nope'):  # an error in the log
-            play(JointTrajectory(Header(frame_id=frame), ['elbow'], [
-                JointTrajectoryPoint(positions=[2.0], time_from_start=HALF)]))
+            play(
+                JointTrajectory(
+                    Header(frame_id=frame),
+                    ['elbow'],
+                    [JointTrajectoryPoint(positions=[2.0], time_from_start=HALF)],
+                )
+            )
         positions = [(0.3 * k, -0.2 * k) for k in range(1, 4)]
-        play(JointTrajectory(Header(frame_id='world'), ['shoulder', 'elbow'], [
-            JointTrajectoryPoint(positions=point, time_from_start=HALF) for point in positions]))
-        wait_until(lambda: any(abs(state.position[0] - 0.9) < 1e-9 for state in list(states)),
-                   'the last point')
+        play(
+            JointTrajectory(
+                Header(frame_id='world'),
+                ['shoulder', 'elbow'],
+                [
+                    JointTrajectoryPoint(positions=point, time_from_start=HALF)
+                    for point in positions
+                ],
+            )
+        )
+        wait_until(
+            lambda: any(abs(state.position[0] - 0.9) < 1e-9 for state in list(states)),
+            'the last point',
+        )
         wait_until(lambda: abs(states[-1].position[0] - 0.9) > 1e-3, 'physics again')
         for point in positions:
             held = [state for state in states if state.position == point]
@@ -148,8 +176,12 @@ class ModelPluginsTest(SimulatorTest):
 
     def actual(self, transforms):
         """Return the published transforms of the link."""
-        return [edge for message in list(transforms) for edge in message.transforms
-                if edge.child_frame_id == 'hog_actual']
+        return [
+            edge
+            for message in list(transforms)
+            for edge in message.transforms
+            if edge.child_frame_id == 'hog_actual'
+        ]
 
 
 if __name__ == '__main__':

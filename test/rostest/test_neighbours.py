@@ -42,10 +42,11 @@ def is_running(pid):
 
 
 class NeighboursTest(unittest.TestCase):
-
     def test_two_names_on_one_master(self):
-        with ServerProcess('__name:=one') as one, \
-                ServerProcess('worlds/shapes.world', '__name:=two') as two:
+        with (
+            ServerProcess('__name:=one') as one,
+            ServerProcess('worlds/shapes.world', '__name:=two') as two,
+        ):
             one.wait_ready()
             two.wait_ready()
             self.assertEqual((models(one), models(two)), (GROUND, SHAPES))
@@ -64,16 +65,20 @@ class NeighboursTest(unittest.TestCase):
 
     def test_one_name_on_two_masters_with_the_same_temporary_directory(self):
         xml = rospy.get_param('robot_description')
-        with tempfile.TemporaryDirectory() as folder, MasterProcess() as address, \
-                ServerProcess(TMPDIR=folder) as here, \
-                ServerProcess(TMPDIR=folder, master=address) as there:
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            MasterProcess() as address,
+            ServerProcess(TMPDIR=folder) as here,
+            ServerProcess(TMPDIR=folder, master=address) as there,
+        ):
             here.wait_ready()
             there.wait_ready()
             spawn = service(here, 'spawn_urdf_model', SpawnModel)
             self.assertTrue(spawn('rosbots', xml, '/', pose(), '').success)
             self.assertEqual(there.world()['model_names'], GROUND)
-            with ServerProcess('-urdf', '-stdin', '-model', 'rosbots', program='spawn_model',
-                               master=address) as client:
+            with ServerProcess(
+                '-urdf', '-stdin', '-model', 'rosbots', program='spawn_model', master=address
+            ) as client:
                 printed, _ = client.process.communicate(xml, timeout=DEADLINE)
             self.assertEqual(client.process.returncode, 0, printed)
             self.assertEqual(here.end()[0], 0)
@@ -91,14 +96,26 @@ class NeighboursTest(unittest.TestCase):
             servers = []
             for number in range(EIGHT):
                 address = stack.enter_context(MasterProcess())
-                servers.append(stack.enter_context(ServerProcess(
-                    master=address, GAZEBO_MASTER_URI=f'http://localhost:{11400 + number}',
-                    **shared)))
+                servers.append(
+                    stack.enter_context(
+                        ServerProcess(
+                            master=address,
+                            GAZEBO_MASTER_URI=f'http://localhost:{11400 + number}',
+                            **shared,
+                        )
+                    )
+                )
             for server in servers:
                 server.wait_ready()
             for number, server in enumerate(servers):
-                with ServerProcess('-urdf', '-stdin', '-model', f'robot_{number}',
-                                   program='spawn_model', master=server.master) as client:
+                with ServerProcess(
+                    '-urdf',
+                    '-stdin',
+                    '-model',
+                    f'robot_{number}',
+                    program='spawn_model',
+                    master=server.master,
+                ) as client:
                     printed, _ = client.process.communicate(xml, timeout=DEADLINE)
                 self.assertEqual(client.process.returncode, 0, printed)
             killed, *others = servers
@@ -110,8 +127,10 @@ class NeighboursTest(unittest.TestCase):
             for number, server in enumerate(others, 1):
                 self.assertEqual(server.world()['model_names'], [*GROUND, f'robot_{number}'])
                 before = server.world()['sim_time']
-                wait_until(lambda: server.world()['sim_time'] > before,  # noqa: B023 (called here)
-                           'advance of the others')
+                wait_until(
+                    lambda: server.world()['sim_time'] > before,  # noqa: B023 (called here)
+                    'advance of the others',
+                )
                 self.assertEqual(server.end()[0], 0)
             left = [name for name in os.listdir(folder) if not name.startswith('.')]
             self.assertEqual(left, [])

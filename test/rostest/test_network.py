@@ -30,20 +30,22 @@ CALLS = 10  # of another service meanwhile
 MOST = 1.0 + MAX_LAG / PERIOD + 0.2  # real-time factor
 
 
-RAY = ('<sensor name="{name}" type="ray"><update_rate>40</update_rate><ray><range><max>9</max>'
-       '</range></ray>{plugin}</sensor>')
-LASER = ('<plugin name="p" filename="libgazebo_ros_laser.so"><topicName>{topic}</topicName>'
-         '</plugin>')
+RAY = (
+    '<sensor name="{name}" type="ray"><update_rate>40</update_rate><ray><range><max>9</max>'
+    '</range></ray>{plugin}</sensor>'
+)
+LASER = '<plugin name="p" filename="libgazebo_ros_laser.so"><topicName>{topic}</topicName></plugin>'
 SENSORS = (
     '<robot name="bot"><link name="l"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/>'
     '</inertial></link><gazebo><static>true</static></gazebo><gazebo reference="l">'
     + RAY.format(name='read', plugin=LASER.format(topic='scan'))
     + RAY.format(name='unread', plugin=LASER.format(topic='other'))
-    + RAY.format(name='bare', plugin='') + '</gazebo></robot>')
+    + RAY.format(name='bare', plugin='')
+    + '</gazebo></robot>'
+)
 
 
 class NetworkTest(SimulatorTest):
-
     def test_services(self):
         wait_until(lambda: 'set_parameters' in services_of(), 'dynamic_reconfigure')
         self.assertEqual(services_of(), set(SERVICES) | OUR_SERVICES)
@@ -51,13 +53,16 @@ class NetworkTest(SimulatorTest):
             with self.subTest(name):
                 self.assertEqual(type_and_sum(name), expected)
         self.assertEqual(type_and_sum('step'), ('rosbots_msgs/Step', Step._md5sum))
-        self.assertEqual(type_and_sum('get_model_omissions'),
-                         ('rosbots_msgs/GetModelOmissions', GetModelOmissions._md5sum))
+        self.assertEqual(
+            type_and_sum('get_model_omissions'),
+            ('rosbots_msgs/GetModelOmissions', GetModelOmissions._md5sum),
+        )
 
     def test_topics(self):
         wait_until(lambda: set(PUBLISHED) <= topics_of(), 'dynamic_reconfigure')
         self.assertEqual(
-            topics_of() - OF_ROSOUT, set(PUBLISHED) | set(SUBSCRIBED) | OUR_TOPICS | {METRICS})
+            topics_of() - OF_ROSOUT, set(PUBLISHED) | set(SUBSCRIBED) | OUR_TOPICS | {METRICS}
+        )
         # rospy connects only where type and MD5 sum agree.
         ends = [rospy.Subscriber(name, kind) for name, kind in PUBLISHED.items()]
         ends += [rospy.Publisher(name, kind, queue_size=1) for name, kind in SUBSCRIBED.items()]
@@ -72,11 +77,12 @@ class NetworkTest(SimulatorTest):
         self.assertEqual(metrics[-1].sensors, [])
         self.spawn('bot', SENSORS)
         self.collect('/scan', LaserScan)
-        wait_until(lambda: any(
-            one.sim_update_rate for one in metrics[-1].sensors), 'scans')
+        wait_until(lambda: any(one.sim_update_rate for one in metrics[-1].sensors), 'scans')
         read, unread, bare = metrics[-1].sensors
-        self.assertEqual((read.name, unread.name, bare.name), (
-            'default::bot::l::read', 'default::bot::l::unread', 'default::bot::l::bare'))
+        self.assertEqual(
+            (read.name, unread.name, bare.name),
+            ('default::bot::l::read', 'default::bot::l::unread', 'default::bot::l::bare'),
+        )
         self.assertAlmostEqual(read.sim_update_rate, 40.0, 6)
         self.assertEqual((unread.sim_update_rate, bare.sim_update_rate, bare.fps), (0.0, 0.0, -1.0))
         self.assertGreater(metrics[-1].header.stamp.to_sec(), metrics[0].header.stamp.to_sec())

@@ -12,7 +12,6 @@ PARTS = ["mesh 'file:///nowhere/nope.stl'", "plugin 'libgazebo_ros_imu.so'", "so
 
 
 class OmissionsTest(SimulatorTest):
-
     def setUp(self):
         super().setUp()
         self._omissions = proxy('get_model_omissions', GetModelOmissions)

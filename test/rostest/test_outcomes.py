@@ -38,99 +38,218 @@ NO_LINK = '{}: link not found, did you forget to scope the link by model name?'
 NAN = 'nan; it must be a finite number'
 # service, request, success, text; with the models `arm` and `box`, paused.
 OUTCOMES = [
-    ('get_model_properties', {'model_name': 'nope'}, False,
-     'GetModelProperties: model does not exist'),
+    (
+        'get_model_properties',
+        {'model_name': 'nope'},
+        False,
+        'GetModelProperties: model does not exist',
+    ),
     ('get_model_properties', {'model_name': 'arm'}, True, 'GetModelProperties: got properties'),
-    ('get_joint_properties', {'joint_name': 'nope'}, False,
-     'GetJointProperties: joint not found'),
-    ('get_joint_properties', {'joint_name': 'arm::hinge'}, True,
-     'GetJointProperties: got properties'),
+    ('get_joint_properties', {'joint_name': 'nope'}, False, 'GetJointProperties: joint not found'),
+    (
+        'get_joint_properties',
+        {'joint_name': 'arm::hinge'},
+        True,
+        'GetJointProperties: got properties',
+    ),
     ('get_joint_properties', {'joint_name': 'weld'}, True, 'GetJointProperties: got properties'),
     ('get_link_properties', {'link_name': 'arm'}, False, NO_LINK.format('GetLinkProperties')),
-    ('get_link_properties', {'link_name': 'arm::rod'}, True,
-     'GetLinkProperties: got properties'),
+    ('get_link_properties', {'link_name': 'arm::rod'}, True, 'GetLinkProperties: got properties'),
     ('get_link_state', {'link_name': 'nope'}, False, NO_LINK.format('GetLinkState')),
-    ('get_link_state', {'link_name': 'rod', 'reference_frame': 'nope'}, False,
-     'GetLinkState: reference reference_frame not found, '
-     'did you forget to scope the link by model name?'),
-    ('get_link_state', {'link_name': 'rod', 'reference_frame': 'map'}, True,
-     'GetLinkState: got state'),
-    ('set_model_state', {'model_state': {'model_name': 'nope'}}, False,
-     'SetModelState: model does not exist'),
-    ('set_model_state', {'model_state': {'model_name': 'arm::rod'}}, False,
-     'SetModelState: model does not exist'),
-    ('set_model_state', {'model_state': {'model_name': 'box', 'reference_frame': 'odom'}}, False,
-     'SetModelState: specified reference frame entity does not exist'),
-    ('set_model_state',
-     {'model_state': {'model_name': 'box', 'pose': {'position': {'x': math.nan}}}}, False,
-     f'SetModelState: Failure - model_state.pose.position.x is {NAN}'),
-    ('set_model_state', {'model_state': {'model_name': 'box', 'reference_frame': 'world'}}, True,
-     'SetModelState: set model state done'),
-    ('set_link_state', {'link_state': {'link_name': 'nope'}}, False,
-     'SetLinkState: link does not exist'),
-    ('set_link_state', {'link_state': {'link_name': 'rod', 'reference_frame': 'box'}}, False,
-     'SetLinkState: failed'),
-    ('set_link_state', {'link_state': {'link_name': 'body', 'reference_frame': 'base'}}, True,
-     'SetLinkState: success'),
-    ('set_model_configuration', {'model_name': 'nope'}, False,
-     'SetModelConfiguration: model does not exist'),
-    ('set_model_configuration', {'model_name': 'arm', 'joint_names': ['hinge']}, False,
-     'SetModelConfiguration: joint name and position list have different lengths'),
-    ('set_model_configuration',
-     {'model_name': 'arm', 'joint_names': ['nope'], 'joint_positions': [1.0]}, True,
-     'SetModelConfiguration: success'),
-    ('set_model_configuration',
-     {'model_name': 'arm', 'joint_names': ['hinge'], 'joint_positions': [math.inf]}, False,
-     'SetModelConfiguration: Failure - joint_positions[0] is inf; it must be a finite number'),
-    ('set_joint_properties', {'joint_name': 'nope'}, False,
-     'SetJointProperties: joint not found'),
+    (
+        'get_link_state',
+        {'link_name': 'rod', 'reference_frame': 'nope'},
+        False,
+        'GetLinkState: reference reference_frame not found, '
+        'did you forget to scope the link by model name?',
+    ),
+    (
+        'get_link_state',
+        {'link_name': 'rod', 'reference_frame': 'map'},
+        True,
+        'GetLinkState: got state',
+    ),
+    (
+        'set_model_state',
+        {'model_state': {'model_name': 'nope'}},
+        False,
+        'SetModelState: model does not exist',
+    ),
+    (
+        'set_model_state',
+        {'model_state': {'model_name': 'arm::rod'}},
+        False,
+        'SetModelState: model does not exist',
+    ),
+    (
+        'set_model_state',
+        {'model_state': {'model_name': 'box', 'reference_frame': 'odom'}},
+        False,
+        'SetModelState: specified reference frame entity does not exist',
+    ),
+    (
+        'set_model_state',
+        {'model_state': {'model_name': 'box', 'pose': {'position': {'x': math.nan}}}},
+        False,
+        f'SetModelState: Failure - model_state.pose.position.x is {NAN}',
+    ),
+    (
+        'set_model_state',
+        {'model_state': {'model_name': 'box', 'reference_frame': 'world'}},
+        True,
+        'SetModelState: set model state done',
+    ),
+    (
+        'set_link_state',
+        {'link_state': {'link_name': 'nope'}},
+        False,
+        'SetLinkState: link does not exist',
+    ),
+    (
+        'set_link_state',
+        {'link_state': {'link_name': 'rod', 'reference_frame': 'box'}},
+        False,
+        'SetLinkState: failed',
+    ),
+    (
+        'set_link_state',
+        {'link_state': {'link_name': 'body', 'reference_frame': 'base'}},
+        True,
+        'SetLinkState: success',
+    ),
+    (
+        'set_model_configuration',
+        {'model_name': 'nope'},
+        False,
+        'SetModelConfiguration: model does not exist',
+    ),
+    (
+        'set_model_configuration',
+        {'model_name': 'arm', 'joint_names': ['hinge']},
+        False,
+        'SetModelConfiguration: joint name and position list have different lengths',
+    ),
+    (
+        'set_model_configuration',
+        {'model_name': 'arm', 'joint_names': ['nope'], 'joint_positions': [1.0]},
+        True,
+        'SetModelConfiguration: success',
+    ),
+    (
+        'set_model_configuration',
+        {'model_name': 'arm', 'joint_names': ['hinge'], 'joint_positions': [math.inf]},
+        False,
+        'SetModelConfiguration: Failure - joint_positions[0] is inf; it must be a finite number',
+    ),
+    ('set_joint_properties', {'joint_name': 'nope'}, False, 'SetJointProperties: joint not found'),
     ('set_joint_properties', {'joint_name': 'hinge'}, True, 'SetJointProperties: properties set'),
-    ('set_joint_properties', {'joint_name': 'hinge', 'ode_joint_config': {'loStop': [2.0]}},
-     False, "SetJointProperties: Failure - loStop 2 of joint 'hinge' is above hiStop 1"),
-    ('set_joint_properties', {'joint_name': 'hinge', 'ode_joint_config': {'damping': [-1.0]}},
-     False, "SetJointProperties: Failure - damping of joint 'hinge' is -1; it must not be "
-     'negative'),
+    (
+        'set_joint_properties',
+        {'joint_name': 'hinge', 'ode_joint_config': {'loStop': [2.0]}},
+        False,
+        "SetJointProperties: Failure - loStop 2 of joint 'hinge' is above hiStop 1",
+    ),
+    (
+        'set_joint_properties',
+        {'joint_name': 'hinge', 'ode_joint_config': {'damping': [-1.0]}},
+        False,
+        "SetJointProperties: Failure - damping of joint 'hinge' is -1; it must not be negative",
+    ),
     ('set_link_properties', {'link_name': 'nope'}, False, NO_LINK.format('SetLinkProperties')),
-    ('set_link_properties', {'link_name': 'box::body', 'mass': 0.0}, False,
-     "SetLinkProperties: Failure - mass is 0.0; link 'box::body' moves, so it must be greater "
-     'than zero [kg]'),
-    ('set_link_properties', {'link_name': 'box::body', 'mass': 1.0, 'ixx': -1.0}, False,
-     "SetLinkProperties: Failure - the inertia tensor for link 'box::body' has a negative "
-     'principal moment; give the tensor about the centre of mass [kg m^2]'),
-    ('set_link_properties', {'link_name': 'box::body', 'mass': 1.0,
-                             'com': {'position': {'y': -1e308}}}, False,
-     "SetLinkProperties: Failure - com.position of link 'box::body' is -1e+308 m from its frame; "
-     'at most 1e+07 m are accepted'),
-    ('set_link_properties',
-     {'link_name': 'box::body', 'mass': 2.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0}, True,
-     'SetLinkProperties: properties set'),
-    ('get_light_properties', {'light_name': 'nope'}, False,
-     'getLightProperties: Requested light nope not found!'),
+    (
+        'set_link_properties',
+        {'link_name': 'box::body', 'mass': 0.0},
+        False,
+        "SetLinkProperties: Failure - mass is 0.0; link 'box::body' moves, so it must be greater "
+        'than zero [kg]',
+    ),
+    (
+        'set_link_properties',
+        {'link_name': 'box::body', 'mass': 1.0, 'ixx': -1.0},
+        False,
+        "SetLinkProperties: Failure - the inertia tensor for link 'box::body' has a negative "
+        'principal moment; give the tensor about the centre of mass [kg m^2]',
+    ),
+    (
+        'set_link_properties',
+        {'link_name': 'box::body', 'mass': 1.0, 'com': {'position': {'y': -1e308}}},
+        False,
+        "SetLinkProperties: Failure - com.position of link 'box::body' is -1e+308 m from its frame; "
+        'at most 1e+07 m are accepted',
+    ),
+    (
+        'set_link_properties',
+        {'link_name': 'box::body', 'mass': 2.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0},
+        True,
+        'SetLinkProperties: properties set',
+    ),
+    (
+        'get_light_properties',
+        {'light_name': 'nope'},
+        False,
+        'getLightProperties: Requested light nope not found!',
+    ),
     ('get_light_properties', {'light_name': 'sun'}, True, ''),
-    ('set_light_properties', {'light_name': 'nope'}, False,
-     'setLightProperties: Requested light nope not found!'),
-    ('delete_light', {'light_name': 'nope'}, False,
-     'DeleteLight: Timeout reached while removing light "nope"'),
+    (
+        'set_light_properties',
+        {'light_name': 'nope'},
+        False,
+        'setLightProperties: Requested light nope not found!',
+    ),
+    (
+        'delete_light',
+        {'light_name': 'nope'},
+        False,
+        'DeleteLight: Timeout reached while removing light "nope"',
+    ),
     ('apply_body_wrench', {'body_name': 'nope'}, False, 'ApplyBodyWrench: body does not exist'),
-    ('apply_body_wrench', {'body_name': 'rod', 'reference_frame': 'nope'}, False,
-     'ApplyBodyWrench: reference_frame not found'),
-    ('apply_body_wrench', {'body_name': 'rod', 'wrench': {'torque': {'z': math.nan}}}, False,
-     f'ApplyBodyWrench: Failure - wrench.torque.z is {NAN}'),
+    (
+        'apply_body_wrench',
+        {'body_name': 'rod', 'reference_frame': 'nope'},
+        False,
+        'ApplyBodyWrench: reference_frame not found',
+    ),
+    (
+        'apply_body_wrench',
+        {'body_name': 'rod', 'wrench': {'torque': {'z': math.nan}}},
+        False,
+        f'ApplyBodyWrench: Failure - wrench.torque.z is {NAN}',
+    ),
     ('apply_body_wrench', {'body_name': 'rod', 'reference_frame': 'arm::base'}, True, ''),
     ('apply_joint_effort', {'joint_name': 'nope'}, False, 'ApplyJointEffort: joint not found'),
-    ('apply_joint_effort', {'joint_name': 'hinge', 'effort': math.nan}, False,
-     f'ApplyJointEffort: Failure - effort is {NAN}'),
+    (
+        'apply_joint_effort',
+        {'joint_name': 'hinge', 'effort': math.nan},
+        False,
+        f'ApplyJointEffort: Failure - effort is {NAN}',
+    ),
     ('apply_joint_effort', {'joint_name': 'hinge'}, True, 'ApplyJointEffort: effort set'),
-    ('spawn_sdf_model', {'model_name': 'new', 'model_xml': 'hello world'}, False,
-     'GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, '
-     'or cannot be converted to Gazebo compatible format.'),
-    ('spawn_sdf_model', {'model_name': 'new', 'model_xml': SDF, 'reference_frame': 'nope'}, False,
-     'SpawnModel: reference reference_frame not found, '
-     'did you forget to scope the link by model name?'),
-    ('spawn_sdf_model', {'model_name': 'box', 'model_xml': SDF}, False,
-     'SpawnModel: Failure - entity already exists.'),
-    ('spawn_sdf_model', {'model_name': 'sun', 'model_xml': LIGHT}, False,
-     'SpawnModel: Failure - entity already exists.'),
+    (
+        'spawn_sdf_model',
+        {'model_name': 'new', 'model_xml': 'hello world'},
+        False,
+        'GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, '
+        'or cannot be converted to Gazebo compatible format.',
+    ),
+    (
+        'spawn_sdf_model',
+        {'model_name': 'new', 'model_xml': SDF, 'reference_frame': 'nope'},
+        False,
+        'SpawnModel: reference reference_frame not found, '
+        'did you forget to scope the link by model name?',
+    ),
+    (
+        'spawn_sdf_model',
+        {'model_name': 'box', 'model_xml': SDF},
+        False,
+        'SpawnModel: Failure - entity already exists.',
+    ),
+    (
+        'spawn_sdf_model',
+        {'model_name': 'sun', 'model_xml': LIGHT},
+        False,
+        'SpawnModel: Failure - entity already exists.',
+    ),
     ('spawn_sdf_model', {'model_name': 'new', 'model_xml': SDF}, True, SPAWNED),
     ('spawn_sdf_model', {'model_name': 'newer', 'model_xml': BOX}, True, SPAWNED),
 ]
@@ -143,7 +262,6 @@ def filled(message, fields):
 
 
 class OutcomesTest(SimulatorTest):
-
     def setUp(self):
         super().setUp()
         self.pause()
@@ -168,8 +286,10 @@ class OutcomesTest(SimulatorTest):
             with self.subTest(f'{name} {fields}'):
                 response = self._call(name, **fields)
                 self.assertEqual((response.success, response.status_message), (success, text))
-        for name, field in (('clear_body_wrenches', 'body_name'),
-                            ('clear_joint_forces', 'joint_name')):
+        for name, field in (
+            ('clear_body_wrenches', 'body_name'),
+            ('clear_joint_forces', 'joint_name'),
+        ):
             self._call(name, **{field: 'nope'})
 
     def test_model_properties(self):
@@ -178,8 +298,10 @@ class OutcomesTest(SimulatorTest):
         self.assertEqual(arm.joint_names, ['hinge', 'weld'])
         self.assertFalse(arm.is_static)
         ground = self._done('get_model_properties', model_name=GROUND)
-        self.assertEqual((ground.body_names, ground.geom_names, ground.joint_names),
-                         (['link'], ['collision'], []))
+        self.assertEqual(
+            (ground.body_names, ground.geom_names, ground.joint_names),
+            (['link'], ['collision'], []),
+        )
         self.assertTrue(ground.is_static)
         for response in (arm, ground):
             self.assertEqual((response.canonical_body_name, response.parent_model_name), ('', ''))
@@ -187,14 +309,20 @@ class OutcomesTest(SimulatorTest):
     def test_model_state_is_set_in_a_frame(self):
         turned = Quaternion(0.0, 0.0, 2.0, 2.0)  # a quarter turn, not normalised
         self._set_model('box', Pose(Point(1.0, 2.0, 50.0), turned))
-        state = ModelState('arm', pose(3.0, 0.0, 1.0), Twist(Vector3(1.0, 0.0, 0.0),
-                                                            Vector3(0.0, 1.0, 0.0)), 'box::body')
+        state = ModelState(
+            'arm',
+            pose(3.0, 0.0, 1.0),
+            Twist(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 1.0, 0.0)),
+            'box::body',
+        )
         proxy_response = self._services['set_model_state'][1](state)
         self.assertTrue(proxy_response.success)
         arm = self.model_state('arm', '')
-        for part, expected in ((arm.pose.position, (1.0, 5.0, 51.0)),
-                               (arm.twist.linear, (0.0, 1.0, 0.0)),
-                               (arm.twist.angular, (-1.0, 0.0, 0.0))):
+        for part, expected in (
+            (arm.pose.position, (1.0, 5.0, 51.0)),
+            (arm.twist.linear, (0.0, 1.0, 0.0)),
+            (arm.twist.angular, (-1.0, 0.0, 0.0)),
+        ):
             for axis, number in zip('xyz', expected, strict=True):
                 self.assertAlmostEqual(getattr(part, axis), number, places=6)
         self._set_model('box', Pose(Point(0.0, 0.0, 50.0), Quaternion(0.0, 0.0, 0.0, 0.0)))
@@ -231,10 +359,15 @@ class OutcomesTest(SimulatorTest):
         self.assertEqual(set(picture.data), {178})  # the background
 
     def test_link_state_is_set_and_read_relative_to_another_link(self):
-        self._done('set_link_state', link_state={
-            'link_name': 'base', 'reference_frame': 'box::body',
-            'pose': {'position': {'x': 4.0}, 'orientation': {'w': 1.0}},
-            'twist': {'linear': {'y': 0.5}}})
+        self._done(
+            'set_link_state',
+            link_state={
+                'link_name': 'base',
+                'reference_frame': 'box::body',
+                'pose': {'position': {'x': 4.0}, 'orientation': {'w': 1.0}},
+                'twist': {'linear': {'y': 0.5}},
+            },
+        )
         state = self._done('get_link_state', link_name='arm::base', reference_frame='body')
         self.assertAlmostEqual(state.link_state.pose.position.x, 4.0, places=6)
         self.assertAlmostEqual(state.link_state.twist.linear.y, 0.5, places=6)
@@ -243,27 +376,46 @@ class OutcomesTest(SimulatorTest):
 
     def test_joint_positions_are_set_within_their_limits(self):
         for asked, reached in ((0.5, 0.5), (3.0, 1.0), (-3.0, -1.0)):
-            self._done('set_model_configuration', model_name='arm',
-                       joint_names=['arm::hinge', 'nope'], joint_positions=[asked, 1.0])
+            self._done(
+                'set_model_configuration',
+                model_name='arm',
+                joint_names=['arm::hinge', 'nope'],
+                joint_positions=[asked, 1.0],
+            )
             joint = self._done('get_joint_properties', joint_name='hinge')
             self.assertAlmostEqual(joint.position[0], reached)
             self.assertEqual((len(joint.rate), joint.type, list(joint.damping)), (1, 0, []))
         limits = ODEJointProperties(hiStop=[2.0], damping=[0.1])
         self._call('set_joint_properties', joint_name='hinge')
         self.assertTrue(self._services['set_joint_properties'][1]('hinge', limits).success)
-        self._done('set_model_configuration', model_name='arm', joint_names=['hinge'],
-                   joint_positions=[3.0])
+        self._done(
+            'set_model_configuration',
+            model_name='arm',
+            joint_names=['hinge'],
+            joint_positions=[3.0],
+        )
         joint = self._done('get_joint_properties', joint_name='hinge')
         self.assertAlmostEqual(joint.position[0], 2.0)
 
     def test_link_properties(self):
-        changed = {'link_name': 'box::body', 'mass': 3.0, 'gravity_mode': False,
-                   'com': {'position': {'x': 0.1}}, 'ixx': 1.0, 'iyy': 2.0, 'izz': 2.5,
-                   'ixy': 0.1, 'ixz': 0.0, 'iyz': 0.0}
+        changed = {
+            'link_name': 'box::body',
+            'mass': 3.0,
+            'gravity_mode': False,
+            'com': {'position': {'x': 0.1}},
+            'ixx': 1.0,
+            'iyy': 2.0,
+            'izz': 2.5,
+            'ixy': 0.1,
+            'ixz': 0.0,
+            'iyz': 0.0,
+        }
         self._done('set_link_properties', **changed)
         told = self._done('get_link_properties', link_name='body')
-        self.assertEqual((told.mass, told.gravity_mode, told.com.position.x, told.ixy, told.izz),
-                         (3.0, False, 0.1, 0.1, 2.5))
+        self.assertEqual(
+            (told.mass, told.gravity_mode, told.com.position.x, told.ixy, told.izz),
+            (3.0, False, 0.1, 0.1, 2.5),
+        )
         self.assertEqual(told.com.orientation, Quaternion(0.0, 0.0, 0.0, 1.0))
         ground = self._done('get_link_properties', link_name='ground_plane::link')
         self.assertEqual((ground.mass, ground.gravity_mode), (1.0, True))
@@ -279,8 +431,10 @@ class OutcomesTest(SimulatorTest):
         lamp = self._done('get_light_properties', light_name='lamp')
         self.assertEqual((lamp.diffuse, lamp.attenuation_linear), (ColorRGBA(), 0.25))
         response = self._call('delete_light', light_name='lamp')
-        self.assertEqual((response.success, response.status_message),
-                         (True, 'DeleteLight: lamp successfully deleted'))
+        self.assertEqual(
+            (response.success, response.status_message),
+            (True, 'DeleteLight: lamp successfully deleted'),
+        )
         self.assertFalse(self._call('delete_light', light_name='lamp').success)
         self.assertNotIn('lamp', self.world().model_names)
 

@@ -61,10 +61,14 @@ class Newcomer:
         self.source.mkdir(parents=True)
         debian_rviz.draw_seldom(self.home / debian_rviz.SAVED)
         self.environment = {
-            'HOME': str(self.home), 'PATH': '/usr/local/bin:/usr/bin:/bin', 'LANG': 'C.UTF-8',
-            'ROS_MASTER_URI': os.environ['ROS_MASTER_URI'], 'ROS_HOSTNAME': 'localhost',
+            'HOME': str(self.home),
+            'PATH': '/usr/local/bin:/usr/bin:/bin',
+            'LANG': 'C.UTF-8',
+            'ROS_MASTER_URI': os.environ['ROS_MASTER_URI'],
+            'ROS_HOSTNAME': 'localhost',
             # catkin_make's own -l makes a build wait while other tests keep the machine busy
-            'ROS_PARALLEL_JOBS': f'-j{os.cpu_count()}', 'ROS_LANG_DISABLE': 'geneus:genlisp',
+            'ROS_PARALLEL_JOBS': f'-j{os.cpu_count()}',
+            'ROS_LANG_DISABLE': 'geneus:genlisp',
             # the workspace of ./rosbots if the path of the clone is not plain
             'XDG_CACHE_HOME': os.environ.get('XDG_CACHE_HOME', os.path.expanduser('~/.cache')),
         }
@@ -72,9 +76,16 @@ class Newcomer:
     def type(self, script, limit=STEP, check=True):
         """Return the output of a shell that runs these lines up to the first failure."""
         ended = subprocess.run(
-            ['bash', '-ec', script], env=self.environment, cwd=self.home, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, timeout=limit,
-            check=False)
+            ['bash', '-ec', script],
+            env=self.environment,
+            cwd=self.home,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            text=True,
+            timeout=limit,
+            check=False,
+        )
         if check and ended.returncode:
             raise AssertionError(f'{script!r} failed:\n{ended.stdout}')
         return ended.stdout
@@ -97,8 +108,9 @@ class Walk:
 
     def open(self, command):
         """Open a terminal as in the README, and type a command."""
-        self._terminals[command] = Terminal('bash', '-c', f'{EACH_TERMINAL}exec {command}',
-                                            env=self._newcomer.environment)
+        self._terminals[command] = Terminal(
+            'bash', '-c', f'{EACH_TERMINAL}exec {command}', env=self._newcomer.environment
+        )
         return command
 
     def keys(self, command, text):
@@ -109,10 +121,13 @@ class Walk:
 
     def wait(self, condition, what):
         """Wait for a condition, and read all terminals meanwhile: a full one blocks its program."""
+
         def looked():
-            self.shown |= {command: terminal.shown()
-                           for command, terminal in self._terminals.items()}
+            self.shown |= {
+                command: terminal.shown() for command, terminal in self._terminals.items()
+            }
             return condition()
+
         wait_until(looked, what, STEP)
 
     def see(self, command, text):
@@ -145,8 +160,11 @@ def count_lines(shown):
 def screen():
     """Start a virtual X server; yield its display name."""
     reader, writer = os.pipe()
-    server = subprocess.Popen(['Xvfb', '-displayfd', str(writer), '-screen', '0', '1024x768x24'],
-                              pass_fds=[writer], stderr=subprocess.DEVNULL)
+    server = subprocess.Popen(
+        ['Xvfb', '-displayfd', str(writer), '-screen', '0', '1024x768x24'],
+        pass_fds=[writer],
+        stderr=subprocess.DEVNULL,
+    )
     try:
         yield f':{os.read(reader, 16).decode().strip()}'
     finally:
@@ -157,7 +175,6 @@ def screen():
 
 
 class OwnPackageTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.reader = Newcomer()
@@ -221,8 +238,9 @@ class OwnPackageTest(unittest.TestCase):
         walk.wait(lambda: self._rviz_is_ready() or not walk.runs(view), 'RViz')
         if walk.runs(view):
             return view
-        walk.wait(lambda: debian_rviz.CRASH.search(walk.shown[view]),
-                  f'a crash in {walk.shown[view]}')
+        walk.wait(
+            lambda: debian_rviz.CRASH.search(walk.shown[view]), f'a crash in {walk.shown[view]}'
+        )
         self.assertGreater(starts, 1, walk.shown[view])
         walk.close(view)
         return self._open_rviz(walk, starts - 1)
@@ -230,20 +248,26 @@ class OwnPackageTest(unittest.TestCase):
     def _rviz_is_ready(self):
         """Return whether RViz offers the first service after its window."""
         answer = self.reader.type_sourced(
-            f'rosservice type {debian_rviz.READY_SERVICE} 2>&1 || true')
+            f'rosservice type {debian_rviz.READY_SERVICE} 2>&1 || true'
+        )
         return answer.startswith('std_srvs/')
 
     def _x(self):
         state = self.reader.type_sourced(
-            "rosservice call /gazebo/get_model_state '{model_name: rosbots}'")
+            "rosservice call /gazebo/get_model_state '{model_name: rosbots}'"
+        )
         return float(re.search(r'x: (\S+)', state)[1])
 
     def test_every_form_of_a_launch_file_expands_the_users_robot(self):
-        for name, form in (('rviz', 'cat '), ('spawn', 'xacro.py '),
-                           ('spawn_in_order', 'xacro --inorder ')):
+        for name, form in (
+            ('rviz', 'cat '),
+            ('spawn', 'xacro.py '),
+            ('spawn_in_order', 'xacro --inorder '),
+        ):
             self.assertIn(form, (self.package / 'launch' / f'{name}.launch').read_text())
             shown = self.reader.type_sourced(
-                f'roslaunch --dump-params rosbots_description {name}.launch')
+                f'roslaunch --dump-params rosbots_description {name}.launch'
+            )
             self.assertIn(THEIR_LINK, shown, name)
 
     def test_our_package_is_left_out_if_the_user_has_one_of_that_name(self):
@@ -260,8 +284,12 @@ class OwnPackageTest(unittest.TestCase):
         write_article_package(package)
         (newcomer.home / 'rosbots').unlink()
         clone = newcomer.source / 'rosbots'
-        shutil.copytree(readme.ROOT, clone, symlinks=True,
-                        ignore=shutil.ignore_patterns('.*', '__pycache__', 'demo_output'))
+        shutil.copytree(
+            readme.ROOT,
+            clone,
+            symlinks=True,
+            ignore=shutil.ignore_patterns('.*', '__pycache__', 'demo_output'),
+        )
         newcomer.type(f'cd {clone}\n{SET_UP}')
         make = ENTER + MAKE.replace('$HOME/rosbots', str(clone))
         refused = newcomer.type(make, BUILD, check=False)
@@ -283,17 +311,22 @@ class OwnPackageTest(unittest.TestCase):
         (over / 'src').mkdir(parents=True)
         link = LINK.replace('catkin_ws', 'over_theirs')
         by_hand = 'cd ~/over_theirs; ln -sT ~/rosbots src/rosbots_description\n'
-        refused = ' '.join(self.reader.type(
-            EACH_TERMINAL + by_hand + MAKE, BUILD, check=False).split())
+        refused = ' '.join(
+            self.reader.type(EACH_TERMINAL + by_hand + MAKE, BUILD, check=False).split()
+        )
         self.assertIn(f'There is another rosbots_description in {self.package}', refused)
         self.assertIn(f'rosbots link {over}', refused)
         shown_text = self.reader.type(EACH_TERMINAL + link, BUILD)
         self.assertIn(LEFT_OUT.format(self.package), shown_text)
         shown = self.reader.type(
             f'{EACH_TERMINAL}cd ~/over_theirs\n{MAKE.strip()} {FEW}source devel/setup.bash\n'
-            f'{FIND}; rospack find xacro', BUILD)
-        self.assertEqual(shown.split()[-3:], [
-            str(self.package), f'{self.package}/launch/spawn.launch', str(over / 'src' / 'xacro')])
+            f'{FIND}; rospack find xacro',
+            BUILD,
+        )
+        self.assertEqual(
+            shown.split()[-3:],
+            [str(self.package), f'{self.package}/launch/spawn.launch', str(over / 'src' / 'xacro')],
+        )
 
     def test_users_package_takes_precedence_when_ours_overlays_its_workspace(self):
         files = '~/rosbots/rosbots exec roslaunch --files rosbots_description spawn.launch'
@@ -306,7 +339,8 @@ class OwnPackageTest(unittest.TestCase):
         shown = self.reader.type(
             'source ~/over/devel/setup.bash; rospack find rosbots_description;'
             'python3 -c "import rosbots_description; print(rosbots_description.__doc__)";'
-            'rosrun gazebo_ros gzserver --iters 10 worlds/shapes.world')
+            'rosrun gazebo_ros gzserver --iters 10 worlds/shapes.world'
+        )
         self.assertIn(str(over / 'src' / 'rosbots_description'), shown)
         self.assertIn('The reader has a Python module', shown)
 

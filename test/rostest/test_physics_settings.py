@@ -18,8 +18,16 @@ from simulator import BOX, DEADLINE, SimulatorTest, pose, proxy, wait_until
 
 from rosbots_description.ros_api.server.loop import MAX_LAG
 
-LIVE = {'time_step': 0.001, 'max_update_rate': 1000.0, 'gravity_z': -9.8, 'sor_pgs_iters': 50,
-        'sor_pgs_w': 1.3, 'erp': 0.2, 'max_contacts': 20, 'contact_max_correcting_vel': 100.0}
+LIVE = {
+    'time_step': 0.001,
+    'max_update_rate': 1000.0,
+    'gravity_z': -9.8,
+    'sor_pgs_iters': 50,
+    'sor_pgs_w': 1.3,
+    'erp': 0.2,
+    'max_contacts': 20,
+    'contact_max_correcting_vel': 100.0,
+}
 # name: type, default, least, most (gazebo_ros/cfg/Physics.cfg), in the order of the description
 DESCRIBED = {
     'time_step': ('double', 0.001, 0.0, 10.0),
@@ -47,7 +55,6 @@ def numbers(config):
 
 
 class PhysicsSettingsTest(SimulatorTest):
-
     def setUp(self):
         super().setUp()
         self.get = proxy('get_physics_properties', GetPhysicsProperties)
@@ -69,14 +76,23 @@ class PhysicsSettingsTest(SimulatorTest):
         self.assertEqual(now.status_message, 'GetPhysicsProperties: got properties')
         self.assertEqual((now.time_step, now.max_update_rate, now.pause), (0.001, 1000.0, False))
         self.assertEqual(now.gravity, Vector3(0.0, 0.0, -9.8))
-        self.assertEqual(now.ode_config, ODEPhysics(
-            sor_pgs_iters=50, sor_pgs_w=1.3, contact_surface_layer=0.001,
-            contact_max_correcting_vel=100.0, erp=0.2, max_contacts=20))
+        self.assertEqual(
+            now.ode_config,
+            ODEPhysics(
+                sor_pgs_iters=50,
+                sor_pgs_w=1.3,
+                contact_surface_layer=0.001,
+                contact_max_correcting_vel=100.0,
+                erp=0.2,
+                max_contacts=20,
+            ),
+        )
 
     def test_every_field_is_kept(self):
         ode = ODEPhysics(True, 1, 30, 1.1, 0.5, 0.002, 50.0, 0.01, 0.3, 7)
-        self.assertEqual(self._set(0.002, 500.0, (1.0, 2.0, 3.0), ode),
-                         (True, 'physics engine updated'))
+        self.assertEqual(
+            self._set(0.002, 500.0, (1.0, 2.0, 3.0), ode), (True, 'physics engine updated')
+        )
         now = self.get()
         self.assertEqual((now.time_step, now.max_update_rate), (0.002, 500.0))
         self.assertEqual((now.gravity, now.ode_config), (Vector3(1.0, 2.0, 3.0), ode))
@@ -141,12 +157,12 @@ class PhysicsSettingsTest(SimulatorTest):
         description = heard[0]
         self.assertEqual(len(description.groups), 1)
         self.assertEqual([p.name for p in description.groups[0].parameters], list(DESCRIBED))
-        default, least, most = map(
-            numbers, (description.dflt, description.min, description.max))
+        default, least, most = map(numbers, (description.dflt, description.min, description.max))
         for parameter in description.groups[0].parameters:
             name = parameter.name
-            self.assertEqual((parameter.type, default[name], least[name], most[name]),
-                             DESCRIBED[name])
+            self.assertEqual(
+                (parameter.type, default[name], least[name], most[name]), DESCRIBED[name]
+            )
             self.assertEqual(parameter.level, 1)
 
     def test_dynamic_reconfigure_shows_and_changes_the_settings(self):
@@ -171,8 +187,9 @@ class PhysicsSettingsTest(SimulatorTest):
 
     def _assert_shown(self, updates, expected):
         def shown():
-            return (expected.items() <= numbers(updates[-1]).items() and
-                    all(rospy.get_param(f'/gazebo/{name}') == expected[name] for name in expected))
+            return expected.items() <= numbers(updates[-1]).items() and all(
+                rospy.get_param(f'/gazebo/{name}') == expected[name] for name in expected
+            )
 
         wait_until(shown, f'{expected} as parameters and in the updates')
 

@@ -15,15 +15,23 @@ from pathlib import Path
 import rostest
 
 ROOT = Path(__file__).resolve().parents[2]
-PARTS = ('LICENSE', 'package.xml', 'pyproject.toml', 'setup.cfg', 'setup.py', 'meshes',
-         'requirements', 'src', 'urdf')
+PARTS = (
+    'LICENSE',
+    'package.xml',
+    'pyproject.toml',
+    'setup.cfg',
+    'setup.py',
+    'meshes',
+    'requirements',
+    'src',
+    'urdf',
+)
 PATIENCE = 800.0  # [s, wall]
 NO_INDEX = re.compile(r'Temporary failure in name resolution|NewConnectionError|ProxyError')
 EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
 
 
 class PipInstallTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.folder = Path(tempfile.mkdtemp())
@@ -31,14 +39,18 @@ class PipInstallTest(unittest.TestCase):
         source.mkdir()
         for part in PARTS:
             if (ROOT / part).is_dir():
-                shutil.copytree(ROOT / part, source / part,
-                                ignore=shutil.ignore_patterns('__pycache__', '*.egg-info'))
+                shutil.copytree(
+                    ROOT / part,
+                    source / part,
+                    ignore=shutil.ignore_patterns('__pycache__', '*.egg-info'),
+                )
             else:
                 shutil.copy(ROOT / part, source)
         cls.venv = cls.folder / 'venv'
         subprocess.run(['/usr/bin/python3', '-m', 'venv', str(cls.venv)], check=True)
         installed = cls.run_there(
-            '-m', 'pip', 'install', '--disable-pip-version-check', '--no-input', f'{source}[gym]')
+            '-m', 'pip', 'install', '--disable-pip-version-check', '--no-input', f'{source}[gym]'
+        )
         if installed.returncode and NO_INDEX.search(installed.stdout):
             print('SKIPPED pip_install: no package index can be reached')
             raise unittest.SkipTest('no package index can be reached')
@@ -52,22 +64,36 @@ class PipInstallTest(unittest.TestCase):
     def run_there(cls, *arguments):
         """Run the Python of the venv, without ROS and this source tree on its path."""
         return subprocess.run(
-            [str(cls.venv / 'bin' / 'python'), '-I', *arguments], cwd=cls.folder, text=True,
-            env={'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)}, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
+            [str(cls.venv / 'bin' / 'python'), '-I', *arguments],
+            cwd=cls.folder,
+            text=True,
+            env={'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=PATIENCE,
+            check=False,
+        )
 
     def test_all_imports_are_declared(self):
         checked = self.run_there('-m', 'pip', '--disable-pip-version-check', 'check')
         self.assertEqual(checked.returncode, 0, checked.stdout)
-        modules = [f'rosbots_description.{path.relative_to(ROOT / "src" / "rosbots_description")}'
-                   .removesuffix('.py').removesuffix('/__init__').replace('/', '.')
-                   for folder in ('sim', 'gym')
-                   for path in (ROOT / 'src' / 'rosbots_description' / folder).rglob('*.py')
-                   if path.stem != 'window']  # which needs [web]
+        modules = [
+            f'rosbots_description.{path.relative_to(ROOT / "src" / "rosbots_description")}'.removesuffix(
+                '.py'
+            )
+            .removesuffix('/__init__')
+            .replace('/', '.')
+            for folder in ('sim', 'gym')
+            for path in (ROOT / 'src' / 'rosbots_description' / folder).rglob('*.py')
+            if path.stem != 'window'
+        ]  # which needs [web]
         imported = self.run_there(
-            '-c', 'import importlib, sys\n'
+            '-c',
+            'import importlib, sys\n'
             'for name in sys.argv[1:]: importlib.import_module(name)\n'
-            'assert "rospy" not in sys.modules', *modules)
+            'assert "rospy" not in sys.modules',
+            *modules,
+        )
         self.assertEqual((imported.returncode, imported.stdout), (0, ''))
 
     def test_types_worlds_and_robot_are_installed(self):
@@ -80,15 +106,23 @@ class PipInstallTest(unittest.TestCase):
 
     def test_the_program_is_installed_and_says_what_it_lacks(self):
         ran = subprocess.run(
-            [str(self.venv / 'bin' / 'rosbots-view'), 'room'], cwd=self.folder, text=True,
-            env={'PATH': '/usr/bin:/bin', 'HOME': str(self.folder)}, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
+            [str(self.venv / 'bin' / 'rosbots-view'), 'room'],
+            cwd=self.folder,
+            text=True,
+            env={'PATH': '/usr/bin:/bin', 'HOME': str(self.folder)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=PATIENCE,
+            check=False,
+        )
         self.assertEqual(ran.returncode, 1, ran.stdout)
         self.assertIn("pip install 'rosbots_description[web]'", ran.stdout)
 
     def test_the_examples_of_the_pages_run(self):
-        pages = [(ROOT / 'doc' / name).read_text(encoding='utf-8')
-                 for name in ('python_api.md', 'gym.md')]
+        pages = [
+            (ROOT / 'doc' / name).read_text(encoding='utf-8')
+            for name in ('python_api.md', 'gym.md')
+        ]
         examples = [one for page in pages for one in EXAMPLE.findall(page)]
         self.assertEqual(len(examples), sum(page.count('```python') for page in pages))
         for code, printed in examples:

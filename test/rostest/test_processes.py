@@ -24,7 +24,6 @@ UNUSED_MASTER = 'http://localhost:1'  # nothing listens on port 1
 
 
 class ProcessTest(unittest.TestCase):
-
     def setUp(self):
         self._started = []
 
@@ -38,9 +37,14 @@ class ProcessTest(unittest.TestCase):
 
     def _start(self, program, *arguments, **environment):
         process = subprocess.Popen(
-            ['rosrun', 'gazebo_ros', program, *arguments], env={**os.environ, **environment},
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            start_new_session=True)
+            ['rosrun', 'gazebo_ros', program, *arguments],
+            env={**os.environ, **environment},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
         self._started.append(process)
         return process
 
@@ -80,8 +84,11 @@ class ProcessTest(unittest.TestCase):
         self._end(server)
 
     def test_ends_by_ctrl_c_and_sigterm_even_while_paused_with_ros_log_lines_only(self):
-        for arguments, number in (((), signal.SIGINT), (('-u',), signal.SIGINT),
-                                  ((), signal.SIGTERM)):
+        for arguments, number in (
+            ((), signal.SIGINT),
+            (('-u',), signal.SIGINT),
+            ((), signal.SIGTERM),
+        ):
             server = self._server(*arguments)
             xml = rospy.get_param('robot_description')
             spawn = proxy('spawn_urdf_model', SpawnModel)
@@ -104,8 +111,10 @@ class ProcessTest(unittest.TestCase):
 
     def test_verbose_shows_debug_messages(self):
         with tempfile.NamedTemporaryFile('w', suffix='.world') as world:
-            world.write('<sdf version="1.6"><world name="w">'
-                        '<audio><device>none</device></audio></world></sdf>')
+            world.write(
+                '<sdf version="1.6"><world name="w">'
+                '<audio><device>none</device></audio></world></sdf>'
+            )
             world.flush()
             for options, shown in (((), False), (('--verbose',), True)):
                 server = self._start('gzserver', *options, '--iters', '50', world.name)
@@ -130,10 +139,10 @@ class ProcessTest(unittest.TestCase):
         printed, _ = first.communicate(timeout=DEADLINE)
         self.assertEqual(first.returncode, 0)
         self.assertRegex(
-            printed, rf'this simulator ends: process {second.pid} on .* taken over the name')
+            printed, rf'this simulator ends: process {second.pid} on .* taken over the name'
+        )
         wait_until(self._has_only_the_ground, 'a response of the second server')
-        self.assertIn(f'replaces the node /gazebo, process {first.pid} on ',
-                      self._end(second))
+        self.assertIn(f'replaces the node /gazebo, process {first.pid} on ', self._end(second))
 
     def test_server_starts_after_one_was_killed(self):
         first = self._server()
@@ -170,8 +179,9 @@ class ProcessTest(unittest.TestCase):
         try:
             server = self._server('-u')
             ticks = []
-            subscriber = rospy.Subscriber('/clock', Clock,
-                                          lambda m: ticks.append(m.clock.to_nsec()))
+            subscriber = rospy.Subscriber(
+                '/clock', Clock, lambda m: ticks.append(m.clock.to_nsec())
+            )
             wait_until(lambda: hears(subscriber), '/clock')
             proxy('unpause_physics', Empty)()
             wait_until(lambda: len(ticks) > 3, 'ticks')
@@ -193,8 +203,9 @@ class ProcessTest(unittest.TestCase):
             self.assertIn('no display', line)
 
     def test_simulator_starts_while_spawn_model_waits(self):
-        spawn = self._start('spawn_model', '-urdf', '-param', 'robot_description',
-                            '-model', 'rosbots', '-z', '0.5')
+        spawn = self._start(
+            'spawn_model', '-urdf', '-param', 'robot_description', '-model', 'rosbots', '-z', '0.5'
+        )
         while 'Waiting for service /gazebo/spawn_urdf_model' not in spawn.stdout.readline():
             self.assertIsNone(spawn.poll())
         server = self._server()

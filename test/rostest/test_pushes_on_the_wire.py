@@ -37,7 +37,6 @@ NOW = Time()
 
 
 class PushesTest(SimulatorTest):
-
     def setUp(self):
         super().setUp()
         self.pause()
@@ -52,15 +51,33 @@ class PushesTest(SimulatorTest):
         where = Pose(Point(0.0, y, 20.0), orientation or Quaternion(0.0, 0.0, 0.0, 1.0))
         self.assertTrue(self.spawn(name, BOX, where).success)
         response = proxy('set_link_properties', SetLinkProperties)(
-            f'{name}::body', Pose(), False, 1.0,
-            MOMENTS['x'], 0.0, 0.0, MOMENTS['y'], 0.0, MOMENTS['z'])
+            f'{name}::body',
+            Pose(),
+            False,
+            1.0,
+            MOMENTS['x'],
+            0.0,
+            0.0,
+            MOMENTS['y'],
+            0.0,
+            MOMENTS['z'],
+        )
         self.assertTrue(response.success, response.status_message)
 
-    def _push(self, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), frame='', point=(0.0, 0.0, 0.0),
-              name='box::body', start=NOW, seconds=1.0):
+    def _push(
+        self,
+        force=(0.0, 0.0, 0.0),
+        torque=(0.0, 0.0, 0.0),
+        frame='',
+        point=(0.0, 0.0, 0.0),
+        name='box::body',
+        start=NOW,
+        seconds=1.0,
+    ):
         wrench = Wrench(Vector3(*force), Vector3(*torque))
         response = self.wrench(
-            name, frame, Point(*point), wrench, start, Duration.from_sec(seconds))
+            name, frame, Point(*point), wrench, start, Duration.from_sec(seconds)
+        )
         self.assertEqual((response.success, response.status_message), (True, ''))
 
     def _twist(self, name='box'):
@@ -101,10 +118,16 @@ class PushesTest(SimulatorTest):
 
     def test_start_duration_and_clearing_of_wrenches(self):
         start = Time.from_sec(self.world().sim_time + 0.5)
-        for i, (name, begin, seconds) in enumerate((
-            ('late', start, 1.0), ('brief', NOW, 0.2), ('none', NOW, 0.0), ('endless', NOW, -1.0),
-            ('cleared', NOW, -1.0), ('deleted', NOW, -1.0),
-        )):
+        for i, (name, begin, seconds) in enumerate(
+            (
+                ('late', start, 1.0),
+                ('brief', NOW, 0.2),
+                ('none', NOW, 0.0),
+                ('endless', NOW, -1.0),
+                ('cleared', NOW, -1.0),
+                ('deleted', NOW, -1.0),
+            )
+        ):
             self._floating(name, y=5.0 * i)
             self._push(force=(1.0, 0.0, 0.0), name=f'{name}::body', start=begin, seconds=seconds)
         self.step(SECOND // 2)
@@ -113,8 +136,13 @@ class PushesTest(SimulatorTest):
         self.clear_wrenches('cleared::body')
         self.assertTrue(self.delete('deleted').success)
         self.step(SECOND // 4)
-        for name, speed in (('late', 0.5), ('brief', 0.2), ('none', 0.0), ('endless', 1.0),
-                            ('cleared', 0.75)):
+        for name, speed in (
+            ('late', 0.5),
+            ('brief', 0.2),
+            ('none', 0.0),
+            ('endless', 1.0),
+            ('cleared', 0.75),
+        ):
             self.assertAlmostEqual(self._twist(name).linear.x, speed, delta=SPEED_TOLERANCE)
 
     def test_a_joint_motor_and_damping(self):
@@ -135,7 +163,8 @@ class PushesTest(SimulatorTest):
     def test_effort_turns_a_door(self):
         self.spawn('door', DOOR)
         self.assertEqual(
-            proxy('get_model_properties', GetModelProperties)('door').joint_names, ['hinge'])
+            proxy('get_model_properties', GetModelProperties)('door').joint_names, ['hinge']
+        )
         self.assertTrue(self.effort('hinge', 0.1, NOW, Duration(1)).success)
         self.step(SECOND + 100)
         rate = self.joint('door::hinge').rate[0]

@@ -47,33 +47,45 @@ WORLD_ONLY = """<launch>
 
 
 class RobotCheckTest(unittest.TestCase):
-
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix='box robot ')
         self.addCleanup(holder.cleanup)
         self.folder = Path(holder.name, 'sources')
         self.package = self.folder / 'box_robot'
         for name, content in (
-                ('package.xml', MANIFEST), ('CMakeLists.txt', BUILD), ('box.urdf', BOX),
-                ('box.launch', LAUNCH), ('test/world.test', WORLD_ONLY)):
+            ('package.xml', MANIFEST),
+            ('CMakeLists.txt', BUILD),
+            ('box.urdf', BOX),
+            ('box.launch', LAUNCH),
+            ('test/world.test', WORLD_ONLY),
+        ):
             path = self.package / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(content, encoding='utf-8')
 
     def check(self, *arguments):
         done = subprocess.run(
-            [sys.executable, str(CHECK), *map(str, arguments)], stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, timeout=PATIENCE, check=False)
+            [sys.executable, str(CHECK), *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
+        )
         return done.returncode, done.stdout
 
     def test_robot_is_built_simulated_and_tested(self):
         results = self.folder / 'results'
-        code, output = self.check('--results', results, self.folder, 'box_robot/box.launch',
-                                  'height:=2')
+        code, output = self.check(
+            '--results', results, self.folder, 'box_robot/box.launch', 'height:=2'
+        )
         self.assertEqual(code, 0, output)
         self.assertTrue(output.endswith('2 passed, 0 failed\n'), output)
-        cases = [case.get('name') for report in results.rglob('rosunit-*.xml')
-                 for case in ElementTree.parse(report).iter('testcase')]
+        cases = [
+            case.get('name')
+            for report in results.rglob('rosunit-*.xml')
+            for case in ElementTree.parse(report).iter('testcase')
+        ]
         self.assertIn('test_a_model_is_simulated', cases)
 
     def test_robot_that_does_not_build_fails(self):
@@ -84,9 +96,10 @@ class RobotCheckTest(unittest.TestCase):
         empty = self.folder / 'empty'
         empty.mkdir()
         for arguments, sentence in (
-                ((empty,), f'there is no package.xml in {empty}'),
-                ((self.folder, 'far.launch'), 'there is no launch file far.launch'),
-                ((self.folder, 'x:=1'), 'x:=1 precedes the launch file that it belongs to')):
+            ((empty,), f'there is no package.xml in {empty}'),
+            ((self.folder, 'far.launch'), 'there is no launch file far.launch'),
+            ((self.folder, 'x:=1'), 'x:=1 precedes the launch file that it belongs to'),
+        ):
             code, output = self.check(*arguments)
             self.assertNotEqual(code, 0)
             self.assertIn(sentence, output)

@@ -24,7 +24,6 @@ def spacing(messages):
 
 
 class SensorTest(SimulatorTest):
-
     def spawn_recorded(self, robot, topics, namespace='/'):
         """Spawn a recorded robot and assert that it has these topics."""
         before = topics_of()
@@ -56,8 +55,9 @@ class SensorTest(SimulatorTest):
         def since():
             """Return the stamps [s] since time jumped back; earlier scans may still arrive."""
             stamps = [scan.header.stamp.to_sec() for scan in list(scans)]
-            return next((stamps[n:] for n in range(1, len(stamps))
-                         if stamps[n] < stamps[n - 1]), [])
+            return next(
+                (stamps[n:] for n in range(1, len(stamps)) if stamps[n] < stamps[n - 1]), []
+            )
 
         wait_until(lambda: len(since()) >= 3, 'further scans')
         self.assertLess(since()[0], 0.1)

@@ -10,12 +10,13 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from simulator import BOX, GROUND, SimulatorTest, pose, topics_of, wait_until
 
 SPAWNED = 'SpawnModel: Successfully spawned entity'
-NO_FRAME = ('SpawnModel: reference reference_frame not found, '
-            'did you forget to scope the link by model name?')
+NO_FRAME = (
+    'SpawnModel: reference reference_frame not found, '
+    'did you forget to scope the link by model name?'
+)
 
 
 class ServicesTest(SimulatorTest):
-
     def _assert_outcome(self, response, success, text):
         self.assertEqual((response.success, response.status_message), (success, text))
 
@@ -28,8 +29,7 @@ class ServicesTest(SimulatorTest):
 
     def test_spawn_and_duplicate_name(self):
         self._assert_outcome(self.spawn(), True, SPAWNED)
-        self._assert_outcome(
-            self.spawn(), False, 'SpawnModel: Failure - entity already exists.')
+        self._assert_outcome(self.spawn(), False, 'SpawnModel: Failure - entity already exists.')
         self.assertEqual(self.world().model_names, [GROUND, 'rosbots'])
 
     def test_spawn_in_frames(self):
@@ -54,7 +54,8 @@ class ServicesTest(SimulatorTest):
         self.assertAlmostEqual(self.model_state('rosbots', '').pose.position.z, 0.5)
         self.assertIn('/odom', topics_of())
         self._assert_outcome(
-            self.delete('rosbots'), True, 'DeleteModel: successfully deleted model')
+            self.delete('rosbots'), True, 'DeleteModel: successfully deleted model'
+        )
         self.assertNotIn('/odom', topics_of())
 
     def test_delete_a_missing_model(self):
@@ -82,8 +83,11 @@ class ServicesTest(SimulatorTest):
         self.assertEqual(response.pose, Pose())
         response = self.model_state(GROUND, 'nope')
         self._assert_outcome(
-            response, False, 'GetModelState: reference relative_entity_name not found, '
-            'did you forget to scope the body by model name?')
+            response,
+            False,
+            'GetModelState: reference relative_entity_name not found, '
+            'did you forget to scope the body by model name?',
+        )
         self.assertEqual(response.pose, Pose())
         self.assertEqual(response.header.frame_id, 'nope')
 

@@ -22,13 +22,18 @@ SENSORS = {  # topic: type, frame
     '/camera1/depth/camera_info': (CameraInfo, 'camera_link_optical'),
     '/camera1/depth/points': (PointCloud2, 'camera_link_optical'),
 }
-FIXED_FRAMES = {'base_link', 'base_second_link', 'mcu_link', 'batery_link', 'caster_back_link',
-                *(frame for _, frame in SENSORS.values())}
+FIXED_FRAMES = {
+    'base_link',
+    'base_second_link',
+    'mcu_link',
+    'batery_link',
+    'caster_back_link',
+    *(frame for _, frame in SENSORS.values()),
+}
 START = 90.0  # [s, wall] timeout of simulator, spawn and robot_state_publisher
 
 
 class FramesTest(unittest.TestCase):
-
     def test_every_frame_has_one_parent_and_odom_is_the_root(self):
         parents, latest = {}, {}
 
@@ -47,8 +52,11 @@ class FramesTest(unittest.TestCase):
         command = Twist()
         command.linear.x = 0.5
         publisher.publish(command)
-        wait_until(lambda: latest['base_footprint'].transform.translation.x > before + 0.2,
-                   'motion of the tree', DEADLINE)
+        wait_until(
+            lambda: latest['base_footprint'].transform.translation.x > before + 0.2,
+            'motion of the tree',
+            DEADLINE,
+        )
         for subscriber in subscribers:
             subscriber.unregister()
         self.assertEqual({child for child, names in parents.items() if len(names) > 1}, set())
@@ -63,13 +71,17 @@ class FramesTest(unittest.TestCase):
         def keep(message, topic):
             found[topic] = message
 
-        subscribers = [rospy.Subscriber(topic, message_class, keep, topic, queue_size=1)
-                       for topic, (message_class, _) in SENSORS.items()]
+        subscribers = [
+            rospy.Subscriber(topic, message_class, keep, topic, queue_size=1)
+            for topic, (message_class, _) in SENSORS.items()
+        ]
         wait_until(lambda: len(found) == len(SENSORS), 'all sensors', START)
         for subscriber in subscribers:
             subscriber.unregister()
-        self.assertEqual({topic: message.header.frame_id for topic, message in found.items()},
-                         {topic: frame for topic, (_, frame) in SENSORS.items()})
+        self.assertEqual(
+            {topic: message.header.frame_id for topic, message in found.items()},
+            {topic: frame for topic, (_, frame) in SENSORS.items()},
+        )
 
 
 if __name__ == '__main__':

@@ -19,13 +19,19 @@ AT_FIRST = {'wheel_left_joint': 1.0, 'wheel_right_joint': 0.0}  # [rad]
 
 
 class SlidersTest(unittest.TestCase):
-
     def test_window_publishes_the_values_of_its_sliders(self):
         rospy.set_param('/zeros/wheel_left_joint', AT_FIRST['wheel_left_joint'])
         messages = []
         rospy.Subscriber('/joint_states', JointState, messages.append)
-        terminal = Terminal('xvfb-run', '-a', 'roslaunch', 'rosbots_description', 'rviz.launch',
-                            'gui:=true', 'rviz:=false')
+        terminal = Terminal(
+            'xvfb-run',
+            '-a',
+            'roslaunch',
+            'rosbots_description',
+            'rviz.launch',
+            'gui:=true',
+            'rviz:=false',
+        )
         self.addCleanup(terminal.close)
         try:
             wait_until(lambda: messages or 'has died' in terminal.shown(), 'joint states', START)
@@ -37,8 +43,11 @@ class SlidersTest(unittest.TestCase):
         self.assertEqual(set(shown), set(AT_FIRST))
         for joint, position in AT_FIRST.items():
             self.assertAlmostEqual(shown[joint], position, delta=SLIDER)
-        wait_until(lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-                   'the end', START)
+        wait_until(
+            lambda: terminal.shown() is not None and terminal.process.poll() is not None,
+            'the end',
+            START,
+        )
         self.assertNotIn('Traceback', terminal.shown())
 
 

@@ -16,12 +16,16 @@ LIMIT = 800.0  # [s, wall] start and end included, on a busy machine
 
 
 class SoakTest(unittest.TestCase):
-
     def test_half_a_minute_has_no_faults(self):
         ended = subprocess.run(
-            [sys.executable, str(SOAK), '--seconds', str(SECONDS)], stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT, text=True, timeout=LIMIT, check=False,
-            env=os.environ | {'PYTHONPATH': f'{TESTS}:{os.environ.get("PYTHONPATH", "")}'})
+            [sys.executable, str(SOAK), '--seconds', str(SECONDS)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+            env=os.environ | {'PYTHONPATH': f'{TESTS}:{os.environ.get("PYTHONPATH", "")}'},
+        )
         print(ended.stdout)
         self.assertEqual(ended.returncode, 0, ended.stdout[-3000:])
 

@@ -16,8 +16,8 @@ WARM_UP = 10  # cycles after which caches are filled
 GROWTH = 20.0  # [MB] promised
 THREADS = 2  # that may be handling a connection
 
-class SpawnDeleteTest(SimulatorTest):
 
+class SpawnDeleteTest(SimulatorTest):
     def test_two_hundred_times(self):
         bare = topics_of()
         process = self._process()
@@ -66,6 +66,7 @@ class SpawnDeleteTest(SimulatorTest):
     @staticmethod
     def _threads(process):
         return len(list((process / 'task').iterdir()))
+
 
 if __name__ == '__main__':
     rospy.init_node('test_spawn_delete', disable_rostime=True)

@@ -35,12 +35,16 @@ class SpawnModelTest(unittest.TestCase):
     def _start(self, *arguments):
         self._process = subprocess.Popen(
             ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-model', 'box', *arguments],
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
 
     def _serve(self, name, service_class, answer):
         def handle(request):
             self._requests.append(request)
             return answer(request)
+
         self._services.append(rospy.Service(name, service_class, handle))
 
     def _assert_shows(self, line):
@@ -63,12 +67,15 @@ class SpawnModelTest(unittest.TestCase):
         self._start('-param', 'robot', '-z', '0.5', '-x', '-1e-1')
         self._assert_shows('Loading model XML from ros parameter robot')
         self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
-        self._serve('/gazebo/spawn_urdf_model', SpawnModel, lambda request: SpawnModelResponse(
-            True, 'SpawnModel: Successfully spawned entity'))
+        self._serve(
+            '/gazebo/spawn_urdf_model',
+            SpawnModel,
+            lambda request: SpawnModelResponse(True, 'SpawnModel: Successfully spawned entity'),
+        )
         self._assert_shows('Calling service /gazebo/spawn_urdf_model')
         self._assert_shows('Spawn status: SpawnModel: Successfully spawned entity')
         self._assert_ends(0)
-        request, = self._requests
+        (request,) = self._requests
         self.assertEqual((request.model_name, request.robot_namespace), ('box', '/'))
         position = request.initial_pose.position
         self.assertEqual((position.x, position.z), (-0.1, 0.5))
@@ -86,6 +93,7 @@ class SpawnModelTest(unittest.TestCase):
             while self._process.poll() is None and time.monotonic() < end:
                 time.sleep(0.05)
             return SpawnModelResponse(False, 'late')
+
         self._serve('/gazebo/spawn_urdf_model', SpawnModel, hang)
         self._start('-param', 'robot')
         self._assert_shows('Calling service /gazebo/spawn_urdf_model')
@@ -93,8 +101,13 @@ class SpawnModelTest(unittest.TestCase):
         self._assert_ends(130)
 
     def test_rejection_is_shown_and_exits_with_1(self):
-        self._serve('/gazebo/spawn_urdf_model', SpawnModel, lambda request: SpawnModelResponse(
-            False, 'SpawnModel: Failure - entity already exists.'))
+        self._serve(
+            '/gazebo/spawn_urdf_model',
+            SpawnModel,
+            lambda request: SpawnModelResponse(
+                False, 'SpawnModel: Failure - entity already exists.'
+            ),
+        )
         self._start('-param', 'robot')
         self._assert_shows('Spawn status: SpawnModel: Failure - entity already exists.')
         self._assert_shows('Spawn service failed. Exiting.')
@@ -106,10 +119,16 @@ class SpawnModelTest(unittest.TestCase):
         self._assert_ends(1)
 
     def test_bound_model_is_deleted_at_exit(self):
-        self._serve('/gazebo/spawn_urdf_model', SpawnModel,
-                    lambda request: SpawnModelResponse(True, 'spawned'))
-        self._serve('/gazebo/delete_model', DeleteModel,
-                    lambda request: DeleteModelResponse(True, 'deleted'))
+        self._serve(
+            '/gazebo/spawn_urdf_model',
+            SpawnModel,
+            lambda request: SpawnModelResponse(True, 'spawned'),
+        )
+        self._serve(
+            '/gazebo/delete_model',
+            DeleteModel,
+            lambda request: DeleteModelResponse(True, 'deleted'),
+        )
         self._start('-param', 'robot', '-b')
         self._assert_shows('Waiting for shutdown to delete model box')
         self._process.send_signal(signal.SIGINT)

@@ -35,8 +35,10 @@ SPARE = 100e6  # [bytes] by which the window may grow with them
 LINK = """<link name="body"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
 XACRO = '<robot name="{}" xmlns:xacro="http://www.ros.org/wiki/xacro">' + LINK + '{}</robot>'
-POPEN = ("${{[c for c in ().__class__.__bases__[0].__subclasses__() if c.__name__ == "
-         "'_wrap_close'][0].__init__.__globals__['popen']('{}').read()}}")
+POPEN = (
+    '${{[c for c in ().__class__.__bases__[0].__subclasses__() if c.__name__ == '
+    "'_wrap_close'][0].__init__.__globals__['popen']('{}').read()}}"
+)
 KNOCK = """import socket, sys
 knock = socket.create_connection(('127.0.0.1', int(sys.argv[1])))
 knock.sendall(b'GET / HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nUpgrade: websocket\\r\\n'
@@ -56,7 +58,6 @@ def models():
 
 
 class StrangersTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.server = cls.enterClassContext(ServerProcess())
@@ -64,8 +65,13 @@ class StrangersTest(unittest.TestCase):
         cls.window = Terminal('rosrun', 'gazebo_ros', 'gzweb', '--port', '0')
         cls.addClassCleanup(cls.window.close)
         said = []
-        wait_until(lambda: said.append(re.search(r'the world is at (\S+)', cls.window.shown()))
-                   or said[-1], 'the address', SLOW)
+        wait_until(
+            lambda: (
+                said.append(re.search(r'the world is at (\S+)', cls.window.shown())) or said[-1]
+            ),
+            'the address',
+            SLOW,
+        )
         cls.address = said[-1][1]
         cls.token = cls.address.partition('token=')[2]
 
@@ -79,14 +85,20 @@ class StrangersTest(unittest.TestCase):
         before, notes = set(models()), len(self.browser.notes())
         self.browser.upload(UPLOAD, name, text.encode())
         self.browser.wait_until(
-            lambda: set(models()) > before or len(self.browser.notes()) > notes, SLOW)
+            lambda: set(models()) > before or len(self.browser.notes()) > notes, SLOW
+        )
         return ' '.join([*self.browser.notes()[notes:], *(set(models()) - before)])
 
     @unittest.skipUnless(os.geteuid() == 0, 'another user can only be tried by root')
     def test_1_another_user_of_the_machine_gets_no_socket(self):
         said = subprocess.run(
-            ['/usr/bin/python3', '-I', '-c', KNOCK, str(urlsplit(self.address).port)], check=True,
-            capture_output=True, text=True, user=NOBODY, cwd='/').stdout
+            ['/usr/bin/python3', '-I', '-c', KNOCK, str(urlsplit(self.address).port)],
+            check=True,
+            capture_output=True,
+            text=True,
+            user=NOBODY,
+            cwd='/',
+        ).stdout
         self.assertIn('403 Forbidden', said)
         self.assertIn('needs the token', said)
 
@@ -94,8 +106,12 @@ class StrangersTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             os.chmod(folder, 0o777)
             command = f'touch {folder}/made; id; cat /proc/*/environ'
-            self.upload('robot.xacro', XACRO.format('one', f'<!-- {POPEN.format(command)} -->'
-                                                    f'<link name="{POPEN.format(command)}"/>'))
+            self.upload(
+                'robot.xacro',
+                XACRO.format(
+                    'one', f'<!-- {POPEN.format(command)} --><link name="{POPEN.format(command)}"/>'
+                ),
+            )
             self.assertEqual(os.listdir(folder), [])
 
     def test_2_names_of_a_model_are_text(self):
@@ -113,9 +129,11 @@ class StrangersTest(unittest.TestCase):
         with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
             file.write('key: open_sesame\n')
             file.flush()
-            for inner in (f"<link name=\"${{load_yaml('{file.name}')['key']}}\"/>",
-                          f'<xacro:include filename="{file.name}"/>',
-                          '<link name="$(env ROS_MASTER_URI)"/>'):
+            for inner in (
+                f"<link name=\"${{load_yaml('{file.name}')['key']}}\"/>",
+                f'<xacro:include filename="{file.name}"/>',
+                '<link name="$(env ROS_MASTER_URI)"/>',
+            ):
                 said = self.upload('robot.xacro', XACRO.format('four', inner))
                 self.assertIn('xacro rejects it', said)
                 self.assertNotIn('sesame', said)
@@ -125,18 +143,29 @@ class StrangersTest(unittest.TestCase):
         process = self.window.process.pid  # rosrun has become the program
         before = memory(process)
         for number in range(MANY):
-            self.browser.send({
-                'type': 'FileTransferStartUpload', 'mime_type': '', 'filename': 'x',
-                'source_component_uuid': self.browser.control(UPLOAD),
-                'transfer_uuid': str(number), 'part_count': 20, 'size_bytes': LARGE})
-            for part in range(19):
-                self.browser.send({
-                    'type': 'FileTransferPart', 'transfer_uuid': str(number), 'part_index': part,
+            self.browser.send(
+                {
+                    'type': 'FileTransferStartUpload',
+                    'mime_type': '',
+                    'filename': 'x',
                     'source_component_uuid': self.browser.control(UPLOAD),
-                    'content': 500_000 * b'x'})
+                    'transfer_uuid': str(number),
+                    'part_count': 20,
+                    'size_bytes': LARGE,
+                }
+            )
+            for part in range(19):
+                self.browser.send(
+                    {
+                        'type': 'FileTransferPart',
+                        'transfer_uuid': str(number),
+                        'part_index': part,
+                        'source_component_uuid': self.browser.control(UPLOAD),
+                        'content': 500_000 * b'x',
+                    }
+                )
             self.browser.read(0.0)
-        self.browser.wait_until(lambda: any('at once' in one for one in self.browser.notes()),
-                                SLOW)
+        self.browser.wait_until(lambda: any('at once' in one for one in self.browser.notes()), SLOW)
         self.browser.choose('Steps', 3)  # is read after all of them
         with Browser(self.address) as other:
             other.wait_until(lambda: other.control('Steps') and other.value('Steps') == 3, SLOW)
@@ -145,10 +174,13 @@ class StrangersTest(unittest.TestCase):
     def test_6_a_camera_of_no_number_harms_nobody(self):
         self.browser.send({**CAMERA, 'position': [math.nan] * 3})
         self.browser.wait_until(
-            lambda: any('not finite' in one for one in self.browser.notes()), SLOW)
+            lambda: any('not finite' in one for one in self.browser.notes()), SLOW
+        )
         with Browser(self.address) as other:
-            other.wait_until(lambda: {'SetCameraPositionMessage'} <= {
-                one['type'] for one in other.messages}, SLOW)
+            other.wait_until(
+                lambda: {'SetCameraPositionMessage'} <= {one['type'] for one in other.messages},
+                SLOW,
+            )
         self.assertNotIn('Traceback', self.window.shown())
 
     def test_7_no_page_may_frame_it(self):

@@ -44,13 +44,19 @@ class TeleopTest(unittest.TestCase):
             rospy.delete_param('/teleop_twist_keyboard')
 
     def _start(self, topic, *arguments):
-        self._terminal = Terminal('rosrun', 'teleop_twist_keyboard', 'teleop_twist_keyboard.py',
-                                  f'/cmd_vel:={topic}', *arguments)
+        self._terminal = Terminal(
+            'rosrun',
+            'teleop_twist_keyboard',
+            'teleop_twist_keyboard.py',
+            f'/cmd_vel:={topic}',
+            *arguments,
+        )
 
     def _listen(self, topic):
         def hear(twist):
             with self._lock:
                 self._commands.append((twist.linear.x, twist.angular.z))
+
         self._subscriber = rospy.Subscriber(topic, Twist, hear)
 
     def _heard(self):
@@ -61,8 +67,10 @@ class TeleopTest(unittest.TestCase):
         """Type a key and wait for a command (linear x [m/s], angular z [rad/s]) sent after it."""
         before = len(self._heard())
         self._terminal.type(key)
-        self.assertTrue(wait_for(lambda: expected in self._heard()[before:]),
-                        f'{key!r} should give {expected}, gave {self._heard()[before:]}')
+        self.assertTrue(
+            wait_for(lambda: expected in self._heard()[before:]),
+            f'{key!r} should give {expected}, gave {self._heard()[before:]}',
+        )
 
     def _assert_ends_well(self):
         self.assertEqual(self._terminal.process.wait(DEADLINE), 0, self._terminal.shown())
@@ -72,8 +80,10 @@ class TeleopTest(unittest.TestCase):
     def test_keys_publish_on_the_articles_topic(self):
         self._listen('/part2_cmr/cmd_vel')
         self._start('/part2_cmr/cmd_vel', '_key_timeout:=0')
-        self.assertTrue(wait_for(lambda: 'currently:\tspeed 0.5\tturn 1.0' in
-                                 self._terminal.shown()), self._terminal.shown())
+        self.assertTrue(
+            wait_for(lambda: 'currently:\tspeed 0.5\tturn 1.0' in self._terminal.shown()),
+            self._terminal.shown(),
+        )
         self.assertTrue(wait_for(lambda: self._heard()[:1] == [(0.0, 0.0)]), self._heard())
         self._press('i', 0.5, 0.0)
         self._press('j', 0.0, 1.0)

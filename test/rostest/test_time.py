@@ -21,7 +21,6 @@ RATE_TOLERANCE = 0.02  # relative; 0.01 is promised over long times
 
 
 class TimeTest(SimulatorTest):
-
     def test_clock_has_every_step_and_is_not_faster_than_real_time(self):
         clock = self.collect('/clock', Clock)
         wait_until(clock.__len__, 'a first message')
@@ -41,9 +40,15 @@ class TimeTest(SimulatorTest):
         links = self.collect('/gazebo/link_states', LinkStates)
         wait_until(lambda: len(models) > 500 and len(links) > 500, 'half a second of states')
         self.assertEqual(models[-1].name, [GROUND, 'rosbots'])
-        self.assertEqual(links[-1].name, [
-            'ground_plane::link', 'rosbots::base_footprint',
-            'rosbots::wheel_left_link', 'rosbots::wheel_right_link'])
+        self.assertEqual(
+            links[-1].name,
+            [
+                'ground_plane::link',
+                'rosbots::base_footprint',
+                'rosbots::wheel_left_link',
+                'rosbots::wheel_right_link',
+            ],
+        )
         self.assertEqual(len(models[-1].pose), 2)
         self.assertEqual(len(links[-1].twist), 4)
 
@@ -53,8 +58,11 @@ class TimeTest(SimulatorTest):
         self.pause()
         stood = self.world().sim_time
         # Subscribed to now, so that nothing is on its way that was published before the pause.
-        heard = [self.collect('/clock', Clock), self.collect('/odom', Odometry),
-                 self.collect('/gazebo/model_states', ModelStates)]
+        heard = [
+            self.collect('/clock', Clock),
+            self.collect('/odom', Odometry),
+            self.collect('/gazebo/model_states', ModelStates),
+        ]
         for _ in range(20):  # services are answered, and time does not advance
             self.assertEqual(self.world().sim_time, stood)
         self.assertEqual(heard, [[], [], []])
@@ -77,8 +85,9 @@ class TimeTest(SimulatorTest):
         wait_until(lambda: self.world().sim_time > 1.0, 'one second')
         clock.clear()
         self.reset_simulation()
-        wait_until(lambda: STEP in [message.clock.to_nsec() for message in list(clock)],
-                   'the first step')
+        wait_until(
+            lambda: STEP in [message.clock.to_nsec() for message in list(clock)], 'the first step'
+        )
         self._assert_back_at_spawn_and_at_rest()
         odometry.clear()
         wait_until(odometry.__len__, 'odometry after the reset')

@@ -15,13 +15,21 @@ ROOT = Path(__file__).resolve().parents[2]
 TOOLS = (ROOT / 'doc' / 'interface.md').read_text(encoding='utf-8')
 # Documented there as missing, or as part of further packages.
 NOT_THERE = {'rqt_graph'}
-OPTIONAL = {'image_view': ('ros-image-view', 'libimage-view-dev'),
-            'topic_tools': ('topic-tools', 'libtopic-tools-dev')}
+OPTIONAL = {
+    'image_view': ('ros-image-view', 'libimage-view-dev'),
+    'topic_tools': ('topic-tools', 'libtopic-tools-dev'),
+}
 
 
 def rosrun(*arguments, **options):
-    return subprocess.run(['rosrun', *arguments], capture_output=True, text=True,
-                          timeout=3 * DEADLINE, check=True, **options).stdout
+    return subprocess.run(
+        ['rosrun', *arguments],
+        capture_output=True,
+        text=True,
+        timeout=3 * DEADLINE,
+        check=True,
+        **options,
+    ).stdout
 
 
 def succeeds(*command):
@@ -29,7 +37,6 @@ def succeeds(*command):
 
 
 class ToolsTest(SimulatorTest):
-
     def test_rosrun_finds_every_program_that_is_listed(self):
         named = set(re.findall(r'rosrun (\w+) ([\w.]+)', TOOLS))
         self.assertLessEqual({('tf', 'tf_echo'), ('dynamic_reconfigure', 'dynparam')}, named)
@@ -42,8 +49,9 @@ class ToolsTest(SimulatorTest):
 
     def test_tf_echo_prints_the_pose_of_the_robot(self):
         self.spawn()
-        echo = subprocess.Popen(['rosrun', 'tf', 'tf_echo', 'odom', 'base_link'],
-                                stdout=subprocess.PIPE, text=True)
+        echo = subprocess.Popen(
+            ['rosrun', 'tf', 'tf_echo', 'odom', 'base_link'], stdout=subprocess.PIPE, text=True
+        )
         self.addCleanup(echo.stdout.close)
         self.addCleanup(echo.wait)
         self.addCleanup(echo.terminate)

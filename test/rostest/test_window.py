@@ -48,11 +48,10 @@ def said_by(window):
     """Return the lines on the screen since the last start of RViz."""
     lines = window.shown().splitlines()
     starts = [i + 1 for i, line in enumerate(lines) if line.startswith(CRASHED)]
-    return lines[max(starts, default=0):]
+    return lines[max(starts, default=0) :]
 
 
 class WindowTest(unittest.TestCase):
-
     @classmethod
     def setUpClass(cls):
         cls.addClassCleanup(open_display())
@@ -74,9 +73,14 @@ class WindowTest(unittest.TestCase):
         return terminal
 
     def wait_for_rviz(self, node):
-        wait_until(lambda: {'/gazebo/view/markers', '/gazebo/view/frames'} <= self.read_by(node)
-                   and rosnode.rosnode_ping(node, max_count=1, skip_cache=True),
-                   f'the window {node}', STEP)
+        wait_until(
+            lambda: (
+                {'/gazebo/view/markers', '/gazebo/view/frames'} <= self.read_by(node)
+                and rosnode.rosnode_ping(node, max_count=1, skip_cache=True)
+            ),
+            f'the window {node}',
+            STEP,
+        )
 
     @staticmethod
     def read_by(node):
@@ -132,9 +136,12 @@ class WindowTest(unittest.TestCase):
         messages = self.collect('/gazebo/view/frames', TFMessage)
 
         def places():
-            return {edge.child_frame_id: edge.transform.translation.x
-                    for message in messages for edge in message.transforms
-                    if edge.header.frame_id == 'world'}
+            return {
+                edge.child_frame_id: edge.transform.translation.x
+                for message in messages
+                for edge in message.transforms
+                if edge.header.frame_id == 'world'
+            }
 
         wait_until(lambda: set(places()) == {GROUND, 'box'}, 'all models', STEP)
         state = ModelState(model_name='box', pose=pose(x=7.0))
@@ -159,10 +166,15 @@ class WindowTest(unittest.TestCase):
         markers.clear()
         server.process.send_signal(signal.SIGKILL)
         self.see(window, GONE)
-        wait_until(lambda: any(marker.type == Marker.TEXT_VIEW_FACING
-                               and marker.text == 'the simulator has ended'
-                               for message in list(markers) for marker in message.markers),
-                   'the notice in the scene', STEP)
+        wait_until(
+            lambda: any(
+                marker.type == Marker.TEXT_VIEW_FACING and marker.text == 'the simulator has ended'
+                for message in list(markers)
+                for marker in message.markers
+            ),
+            'the notice in the scene',
+            STEP,
+        )
         self.assertIsNone(window.process.poll())
         self.server()
         self.see(window, BACK)

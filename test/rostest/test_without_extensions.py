@@ -22,12 +22,15 @@ OF_GAZEBO = set(PUBLISHED) | set(SUBSCRIBED) | OF_ROSOUT
 
 def nodes():
     """Return the names of all nodes that publish, subscribe or offer services."""
-    return {node for entries in rospy.get_master().getSystemState()[2]
-            for _, nodes in entries for node in nodes}
+    return {
+        node
+        for entries in rospy.get_master().getSystemState()[2]
+        for _, nodes in entries
+        for node in nodes
+    }
 
 
 class WithoutExtensionsTest(SimulatorTest):
-
     def test_an_empty_world_and_the_robot_in_it(self):
         wait_until(lambda: 'set_parameters' in services_of(), 'dynamic_reconfigure')
         self.assertEqual(topics_of(), OF_GAZEBO)

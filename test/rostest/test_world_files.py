@@ -39,7 +39,6 @@ def other(service, service_type):
 
 
 class WorldFilesTest(unittest.TestCase):
-
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -50,19 +49,27 @@ class WorldFilesTest(unittest.TestCase):
         with ServerProcess(str(self.world), NAME) as server:
             server.wait_ready()
             physics = other('get_physics_properties', GetPhysicsProperties)()
-            self.assertEqual((physics.time_step, physics.max_update_rate, physics.gravity.z),
-                             (0.002, 500.0, -1.62))
+            self.assertEqual(
+                (physics.time_step, physics.max_update_rate, physics.gravity.z),
+                (0.002, 500.0, -1.62),
+            )
             answer = other('spawn_urdf_model', SpawnModel)(
-                'rosbots', rospy.get_param('robot_description'), '/', pose(), '')
+                'rosbots', rospy.get_param('robot_description'), '/', pose(), ''
+            )
             self.assertTrue(answer.success, answer.status_message)
-            self.assertEqual(other('get_world_properties', GetWorldProperties)().model_names,
-                             ['ground_plane', 'wall', 'rosbots'])
+            self.assertEqual(
+                other('get_world_properties', GetWorldProperties)().model_names,
+                ['ground_plane', 'wall', 'rosbots'],
+            )
             state = other('get_model_state', GetModelState)
             wait_until(lambda: state('rosbots', '').pose.position.z < 0.4, 'fall of the robot')
             code, printed = server.end()
         self.assertEqual(code, 0)
-        for fault in (f"{self.world}, line 7: 'model://nowhere'", f'{self.world}, line 11: link',
-                      "world plugin 'weather' (libweather.so, line 12) is not run"):
+        for fault in (
+            f"{self.world}, line 7: 'model://nowhere'",
+            f'{self.world}, line 11: link',
+            "world plugin 'weather' (libweather.so, line 12) is not run",
+        ):
             self.assertIn(fault, printed)
 
     def test_missing_world_is_an_error_and_does_not_affect_other_servers(self):

@@ -23,8 +23,9 @@ def write_article_package(folder: Path) -> None:
 def _robot() -> ElementTree.Element:
     """Return the article's robot as plain URDF, so that `cat` can replace xacro."""
     article = json.loads((_DATA / 'article_robot.json').read_text(encoding='utf-8'))
-    robot = _element('robot', {'name': article['name'],
-                               'xmlns:xacro': 'http://www.ros.org/wiki/xacro'})
+    robot = _element(
+        'robot', {'name': article['name'], 'xmlns:xacro': 'http://www.ros.org/wiki/xacro'}
+    )
     for name, parts in article['links'].items():
         link = _element('link', {'name': name}, robot)
         for tag, part in parts.items():
@@ -32,11 +33,21 @@ def _robot() -> ElementTree.Element:
     for name, joint in article['joints'].items():
         _add_joint(robot, name, joint)
     _element('link', {'name': THEIR_LINK}, robot)
-    _add_joint(robot, 'reader_joint', {
-        'type': 'fixed', 'parent': 'base_link', 'child': THEIR_LINK,
-        'origin': {'xyz': [0, 0, 0], 'rpy': [0, 0, 0]}})
-    plugin = _element('plugin', {key: article['plugin'][key] for key in ('name', 'filename')},
-                      _element('gazebo', {}, robot))
+    _add_joint(
+        robot,
+        'reader_joint',
+        {
+            'type': 'fixed',
+            'parent': 'base_link',
+            'child': THEIR_LINK,
+            'origin': {'xyz': [0, 0, 0], 'rpy': [0, 0, 0]},
+        },
+    )
+    plugin = _element(
+        'plugin',
+        {key: article['plugin'][key] for key in ('name', 'filename')},
+        _element('gazebo', {}, robot),
+    )
     for tag, text in article['plugin']['parameters'].items():
         _element(tag, {}, plugin).text = text
     return robot
@@ -61,10 +72,13 @@ def _add_joint(robot: ElementTree.Element, name: str, joint: dict) -> None:
         _element('axis', {'xyz': joint['axis']}, element)
 
 
-def _element(tag: str, attributes: dict, parent: ElementTree.Element | None = None
-             ) -> ElementTree.Element:
-    texts = {key: ' '.join(map(str, value)) if isinstance(value, list) else str(value)
-             for key, value in attributes.items()}
+def _element(
+    tag: str, attributes: dict, parent: ElementTree.Element | None = None
+) -> ElementTree.Element:
+    texts = {
+        key: ' '.join(map(str, value)) if isinstance(value, list) else str(value)
+        for key, value in attributes.items()
+    }
     if parent is None:
         return ElementTree.Element(tag, texts)
     return ElementTree.SubElement(parent, tag, texts)

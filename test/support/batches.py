@@ -23,15 +23,17 @@ FLOATING = """<sdf version="1.6"><world name="default"><gravity>0 0 0</gravity><
 
 def pushed_ball(**changes: Any) -> dict[str, Any]:
     """Return a scenario of one second with the parameter `force` [N]; `changes` replace keys."""
-    return deepcopy({
-        'duration': 1.0,
-        'models': [{'name': 'ball', 'text': BALL, 'pose': {'z': 5.0}}],
-        'commands': [{'at': 0.0, 'topic': '/push', 'message': {'force': {'x': '$force'}}}],
-        'record': {'x': {'model': 'ball', 'value': 'pose.position.x'}},
-        'conditions': ['x_end > 0.5'],
-        'parameters': {'force': {'grid': [1.0, 3.0]}},
-        **changes,
-    })
+    return deepcopy(
+        {
+            'duration': 1.0,
+            'models': [{'name': 'ball', 'text': BALL, 'pose': {'z': 5.0}}],
+            'commands': [{'at': 0.0, 'topic': '/push', 'message': {'force': {'x': '$force'}}}],
+            'record': {'x': {'model': 'ball', 'value': 'pose.position.x'}},
+            'conditions': ['x_end > 0.5'],
+            'parameters': {'force': {'grid': [1.0, 3.0]}},
+            **changes,
+        }
+    )
 
 
 @contextlib.contextmanager

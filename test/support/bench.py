@@ -39,10 +39,27 @@ NESTED = """<sdf version="1.6"><model name="outer"><link name="base"/>
 LAMP = '<sdf version="1.6"><light name="lamp" type="point"/></sdf>'
 # Names that requests contain often.
 NAMES = (
-    'rosbots', 'rosbots::base_footprint', 'base_footprint', 'wheel_left_link', 'wheel_left_joint',
-    'rosbots::wheel_right_joint', 'base_link', 'door', 'door::box', 'hinge', 'outer', 'inner',
-    'outer::inner', 'outer::inner::arm', 'ground_plane', 'ground_plane::link', 'lamp', 'world',
-    'map', 'new', 'new::box',
+    'rosbots',
+    'rosbots::base_footprint',
+    'base_footprint',
+    'wheel_left_link',
+    'wheel_left_joint',
+    'rosbots::wheel_right_joint',
+    'base_link',
+    'door',
+    'door::box',
+    'hinge',
+    'outer',
+    'inner',
+    'outer::inner',
+    'outer::inner::arm',
+    'ground_plane',
+    'ground_plane::link',
+    'lamp',
+    'world',
+    'map',
+    'new',
+    'new::box',
 )
 
 
@@ -53,9 +70,11 @@ class Bench:
         self.world = world
         registrar = SimpleNamespace(wait=lambda _deadline: True)
         loop = SimpleNamespace(
-            **dict.fromkeys(('call', 'post', 'run_in_thread'), lambda command: command()))
+            **dict.fromkeys(('call', 'post', 'run_in_thread'), lambda command: command())
+        )
         self.server = Server(
-            world, loop, registrar, package_directory, lambda _inner: None, _sandbox())
+            world, loop, registrar, package_directory, lambda _inner: None, _sandbox()
+        )
 
     def call(self, name: str, request: Message) -> Any:
         """Return the response, or None if the call failed with an error message."""
@@ -87,13 +106,17 @@ def furnished_world() -> Iterator[World]:
     """Yield a world with one of everything, and a box far away that no request names."""
     with empty_world() as world:
         world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.spawn(urdf_spec(DOOR.partition('>')[2].removesuffix('</robot>')), 'door',
-                    Pose((10.0, 0.0, 1.0)))
+        world.spawn(
+            urdf_spec(DOOR.partition('>')[2].removesuffix('</robot>')),
+            'door',
+            Pose((10.0, 0.0, 1.0)),
+        )
         spec, _ = load_sdf(NESTED, 'outer', find_model=lambda _: None)
         world.spawn(spec, 'outer', Pose((0.0, 10.0, 1.0)))
         static = '<gazebo><static>true</static></gazebo>'
-        world.spawn(urdf_spec(box_urdf('2 2 1', 1.0, static)), 'pedestal',
-                    Pose((*PLACE.position[:2], 0.5)))  # also when the ground is deleted
+        world.spawn(
+            urdf_spec(box_urdf('2 2 1', 1.0, static)), 'pedestal', Pose((*PLACE.position[:2], 0.5))
+        )  # also when the ground is deleted
         world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), BYSTANDER, PLACE)
         world.lights['lamp'] = LightSpec('lamp')
         yield world

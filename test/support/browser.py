@@ -13,9 +13,16 @@ from websockets.sync.client import connect
 from .patience import PATIENCE
 
 CAMERA = {
-    'type': 'ViewerCameraMessage', 'wxyz': [1.0, 0.0, 0.0, 0.0], 'position': [3.0, 3.0, 3.0],
-    'fov': 1.0, 'near': 0.01, 'far': 1000.0, 'image_height': 100, 'image_width': 100,
-    'look_at': [0.0, 0.0, 0.0], 'up_direction': [0.0, 0.0, 1.0],
+    'type': 'ViewerCameraMessage',
+    'wxyz': [1.0, 0.0, 0.0, 0.0],
+    'position': [3.0, 3.0, 3.0],
+    'fov': 1.0,
+    'near': 0.01,
+    'far': 1000.0,
+    'image_height': 100,
+    'image_width': 100,
+    'look_at': [0.0, 0.0, 0.0],
+    'up_direction': [0.0, 0.0, 1.0],
 }
 
 
@@ -28,8 +35,11 @@ class Browser:
 
     def __init__(self, address, headers=None):
         self._connection = connect(
-            address.replace('http', 'ws', 1), subprotocols=[f'viser-v{viser.__version__}'],
-            additional_headers=headers, max_size=None)
+            address.replace('http', 'ws', 1),
+            subprotocols=[f'viser-v{viser.__version__}'],
+            additional_headers=headers,
+            max_size=None,
+        )
         self.messages = []
         self.windows = 0  # of messages: what comes at once
         self.nodes = {}  # of the scene: name -> [type, position, wxyz]
@@ -63,7 +73,8 @@ class Browser:
                 return
             unpacked, packed = struct.unpack_from('<QQ', content)
             inner = zstandard.ZstdDecompressor().decompress(
-                content[16:16 + packed], max_output_size=unpacked)
+                content[16 : 16 + packed], max_output_size=unpacked
+            )
             self.windows += 1
             for message in msgspec.msgpack.decode(inner)['messages']:
                 self.messages.append(message)
@@ -92,8 +103,9 @@ class Browser:
     def choose(self, label, value):
         """Set the value of a control, when there is one of that label."""
         self.wait_until(lambda: self.control(label))
-        self.send({'type': 'GuiUpdateMessage', 'uuid': self.control(label),
-                   'updates': {'value': value}})
+        self.send(
+            {'type': 'GuiUpdateMessage', 'uuid': self.control(label), 'updates': {'value': value}}
+        )
 
     def look_at(self, point, position=CAMERA['position']):
         """Turn the camera to a point, or move it, too."""
@@ -101,9 +113,18 @@ class Browser:
 
     def click_node(self, name):
         """Click on a node of the scene."""
-        self.send({'type': 'SceneNodeClickMessage', 'name': name, 'instance_index': None,
-                   'ray_origin': [0.0, 0.0, 0.0], 'ray_direction': [1.0, 0.0, 0.0],
-                   'screen_pos': [0.5, 0.5], 'modifier': None, 'owner': ''})
+        self.send(
+            {
+                'type': 'SceneNodeClickMessage',
+                'name': name,
+                'instance_index': None,
+                'ray_origin': [0.0, 0.0, 0.0],
+                'ray_direction': [1.0, 0.0, 0.0],
+                'screen_pos': [0.5, 0.5],
+                'modifier': None,
+                'owner': '',
+            }
+        )
 
     def grab(self, node):
         """Begin to drag a handle of the scene."""
@@ -111,8 +132,15 @@ class Browser:
 
     def drag(self, node, position):
         """Drag it to a position."""
-        self.send({'type': 'TransformControlsUpdateMessage', 'name': node, 'owner': '',
-                   'wxyz': [1.0, 0.0, 0.0, 0.0], 'position': position})
+        self.send(
+            {
+                'type': 'TransformControlsUpdateMessage',
+                'name': node,
+                'owner': '',
+                'wxyz': [1.0, 0.0, 0.0, 0.0],
+                'position': position,
+            }
+        )
 
     def let_go(self, node):
         """Let it go."""
@@ -120,65 +148,107 @@ class Browser:
 
     def click_ray(self, origin, direction):
         """Click where a ray goes."""
-        self.send({'type': 'ScenePointerMessage', 'event_type': 'click', 'ray_origin': origin,
-                   'ray_direction': direction, 'screen_pos': [[0.5, 0.5]], 'modifier': None})
+        self.send(
+            {
+                'type': 'ScenePointerMessage',
+                'event_type': 'click',
+                'ray_origin': origin,
+                'ray_direction': direction,
+                'screen_pos': [[0.5, 0.5]],
+                'modifier': None,
+            }
+        )
 
     def upload(self, label, name, content, claimed=None):
         """Upload a file in parts of 1000 bytes, or of as many bytes as claimed."""
-        parts = [content[n:n + 1000] for n in range(0, len(content), 1000)]
+        parts = [content[n : n + 1000] for n in range(0, len(content), 1000)]
         button = self.control(label)
-        self.send({'type': 'FileTransferStartUpload', 'source_component_uuid': button,
-                   'transfer_uuid': name, 'filename': name, 'mime_type': '',
-                   'part_count': len(parts), 'size_bytes': claimed or len(content)})
+        self.send(
+            {
+                'type': 'FileTransferStartUpload',
+                'source_component_uuid': button,
+                'transfer_uuid': name,
+                'filename': name,
+                'mime_type': '',
+                'part_count': len(parts),
+                'size_bytes': claimed or len(content),
+            }
+        )
         for number, part in enumerate(parts):
-            self.send({'type': 'FileTransferPart', 'source_component_uuid': button,
-                       'transfer_uuid': name, 'part_index': number, 'content': part})
+            self.send(
+                {
+                    'type': 'FileTransferPart',
+                    'source_component_uuid': button,
+                    'transfer_uuid': name,
+                    'part_index': number,
+                    'content': part,
+                }
+            )
 
     def notes(self):
         """Return what the page has notified of."""
-        return [message['props']['title'] for message in self.messages
-                if message['type'] == 'NotificationShowMessage']
+        return [
+            message['props']['title']
+            for message in self.messages
+            if message['type'] == 'NotificationShowMessage'
+        ]
 
     def answer_render(self, content):
         """Give the picture that is asked for, the bytes of a JPEG or PNG; tell if there is one."""
-        asked = [message['render_uuid'] for message in self.messages
-                 if message['type'] == 'GetRenderRequestMessage']
+        asked = [
+            message['render_uuid']
+            for message in self.messages
+            if message['type'] == 'GetRenderRequestMessage'
+        ]
         if len(asked) == self.renders:
             return False
         self.renders = len(asked)
-        self.send({'type': 'GetRenderResponseMessage', 'payload': content,
-                   'render_uuid': asked[-1]})
+        self.send(
+            {'type': 'GetRenderResponseMessage', 'payload': content, 'render_uuid': asked[-1]}
+        )
         return True
 
     def download(self):
         """Return name and content of the file that came last; None if there is none yet."""
-        started = [message for message in self.messages
-                   if message['type'] == 'FileTransferStartDownload']
+        started = [
+            message for message in self.messages if message['type'] == 'FileTransferStartDownload'
+        ]
         if not started:
             return None
-        parts = [message['content'] for message in self.messages
-                 if message['type'] == 'FileTransferPart'
-                 and message['transfer_uuid'] == started[-1]['transfer_uuid']]
+        parts = [
+            message['content']
+            for message in self.messages
+            if message['type'] == 'FileTransferPart'
+            and message['transfer_uuid'] == started[-1]['transfer_uuid']
+        ]
         is_whole = len(parts) == started[-1]['part_count']
         return (started[-1]['filename'], b''.join(parts)) if is_whole else None
 
     def control(self, label):
         """Return the number of the control of that label; None if there is none."""
-        return next((uuid for uuid, (_, props) in self.controls.items()
-                     if props.get('label') == label), None)
+        return next(
+            (uuid for uuid, (_, props) in self.controls.items() if props.get('label') == label),
+            None,
+        )
 
     def texts(self):
         """Return the texts that are shown, with spaces between what a table has."""
-        return [html.unescape(re.sub('<[^>]*>', ' ', content.replace('<br>', '\n'))).strip()
-                for content in self._html() if content.startswith(WORDS)]
+        return [
+            html.unescape(re.sub('<[^>]*>', ' ', content.replace('<br>', '\n'))).strip()
+            for content in self._html()
+            if content.startswith(WORDS)
+        ]
 
     def tables(self):
         """Return the HTML that is shown of what is selected, in one."""
         return ''.join(content for content in self._html() if not content.startswith((WORDS, *OWN)))
 
     def _html(self):
-        return [props['content'] for kind, props in self.controls.values()
-                if kind == 'GuiHtmlMessage' and props.get('visible', True)]
+        return [
+            props['content']
+            for kind, props in self.controls.values()
+            if kind == 'GuiHtmlMessage' and props.get('visible', True)
+        ]
 
     def value(self, label):
         """Return the value of the control of that label."""
@@ -192,8 +262,11 @@ class Browser:
         elif kind == 'CommandUpdateMessage':
             self._enable(message['uuid'], message['updates'])
         elif kind == 'RemoveSceneNodeMessage':
-            self.nodes = {node: state for node, state in self.nodes.items()
-                          if node != name and not node.startswith(f'{name}/')}
+            self.nodes = {
+                node: state
+                for node, state in self.nodes.items()
+                if node != name and not node.startswith(f'{name}/')
+            }
         elif kind == 'SetPositionMessage' and name in self.nodes:
             self.nodes[name][1] = message['position']
         elif kind == 'SetOrientationMessage' and name in self.nodes:
@@ -205,7 +278,9 @@ class Browser:
         elif kind.startswith('Gui') and 'props' in message:
             self.parents[message['uuid']] = message.get('container_uuid')
             self.controls[message['uuid']] = [
-                kind, message['props'] | {'value': message.get('value')}]
+                kind,
+                message['props'] | {'value': message.get('value')},
+            ]
         elif name is not None and 'props' in message and kind != 'SceneNodeUpdateMessage':
             self.nodes[name] = [kind, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
 

@@ -27,14 +27,22 @@ def robot(bullet, client, x, y):
     ball = client.createCollisionShape(bullet.GEOM_SPHERE, radius=0.06)
     lying = (0.7071067811865476, 0.0, 0.0, 0.7071067811865476)
     number = client.createMultiBody(
-        4.0, body, -1, (x, y, 0.2), (0.0, 0.0, 0.05, 0.9987), linkMasses=(0.4, 0.4, 0.1),
-        linkCollisionShapeIndices=(wheel, wheel, ball), linkVisualShapeIndices=(-1, -1, -1),
+        4.0,
+        body,
+        -1,
+        (x, y, 0.2),
+        (0.0, 0.0, 0.05, 0.9987),
+        linkMasses=(0.4, 0.4, 0.1),
+        linkCollisionShapeIndices=(wheel, wheel, ball),
+        linkVisualShapeIndices=(-1, -1, -1),
         linkPositions=((0.1, 0.23, -0.05), (0.1, -0.23, -0.05), (-0.2, 0.0, -0.1)),
         linkOrientations=(lying, lying, (0.0, 0.0, 0.0, 1.0)),
         linkInertialFramePositions=((0.0, 0.0, 0.0),) * 3,
-        linkInertialFrameOrientations=((0.0, 0.0, 0.0, 1.0),) * 3, linkParentIndices=(0, 0, 0),
+        linkInertialFrameOrientations=((0.0, 0.0, 0.0, 1.0),) * 3,
+        linkParentIndices=(0, 0, 0),
         linkJointTypes=(bullet.JOINT_REVOLUTE, bullet.JOINT_REVOLUTE, bullet.JOINT_FIXED),
-        linkJointAxis=((0.0, 0.0, 1.0),) * 3)
+        linkJointAxis=((0.0, 0.0, 1.0),) * 3,
+    )
     client.changeDynamics(number, 2, lateralFriction=0.0)
     return number
 
@@ -43,12 +51,21 @@ def pendulum(bullet, client):
     """Add two rods that swing from a fixed one."""
     rod = client.createCollisionShape(bullet.GEOM_CAPSULE, radius=0.03, height=0.4)
     number = client.createMultiBody(
-        0.0, -1, -1, (0.0, 3.0, 1.5), linkMasses=(1.0, 0.5), linkCollisionShapeIndices=(rod, rod),
-        linkVisualShapeIndices=(-1, -1), linkPositions=((0.1, 0.0, 0.0), (0.0, 0.0, -0.5)),
+        0.0,
+        -1,
+        -1,
+        (0.0, 3.0, 1.5),
+        linkMasses=(1.0, 0.5),
+        linkCollisionShapeIndices=(rod, rod),
+        linkVisualShapeIndices=(-1, -1),
+        linkPositions=((0.1, 0.0, 0.0), (0.0, 0.0, -0.5)),
         linkOrientations=((0.0, 0.6, 0.0, 0.8), (0.0, 0.0, 0.0, 1.0)),
         linkInertialFramePositions=((0.0, 0.0, -0.25),) * 2,
-        linkInertialFrameOrientations=((0.0, 0.0, 0.0, 1.0),) * 2, linkParentIndices=(0, 1),
-        linkJointTypes=(bullet.JOINT_REVOLUTE,) * 2, linkJointAxis=((0.0, 1.0, 0.0),) * 2)
+        linkInertialFrameOrientations=((0.0, 0.0, 0.0, 1.0),) * 2,
+        linkParentIndices=(0, 1),
+        linkJointTypes=(bullet.JOINT_REVOLUTE,) * 2,
+        linkJointAxis=((0.0, 1.0, 0.0),) * 2,
+    )
     client.enableJointForceTorqueSensor(number, 1)
     return number
 
@@ -60,20 +77,24 @@ def obstacles(bullet, client, folder):
     lines += ['f {} {} {}'.format(*(number + 1 for number in face)) for face in ROCK_FACES]
     file = Path(folder) / 'rock.obj'
     file.write_text('\n'.join(lines) + '\n', encoding='utf-8')
-    rock = client.createCollisionShape(bullet.GEOM_MESH, fileName=str(file),
-                                       flags=bullet.GEOM_FORCE_CONCAVE_TRIMESH)
+    rock = client.createCollisionShape(
+        bullet.GEOM_MESH, fileName=str(file), flags=bullet.GEOM_FORCE_CONCAVE_TRIMESH
+    )
     client.createMultiBody(0.0, rock, -1, (2.0, 0.0, 0.0))
     box = client.createCollisionShape(bullet.GEOM_BOX, halfExtents=(0.1, 0.1, 0.1))
-    return [client.createMultiBody(0.5, box, -1, (-2.0 + 0.04 * i, 0.03 * i, 0.15 + 0.25 * i))
-            for i in range(6)]
+    return [
+        client.createMultiBody(0.5, box, -1, (-2.0 + 0.04 * i, 0.03 * i, 0.15 + 0.25 * i))
+        for i in range(6)
+    ]
 
 
 def readings(client, bodies):
     """Return all numbers of the scene: poses, velocities, joints, contacts, rays."""
     found = [float(len(client.getContactPoints()))]
     for body in bodies:
-        found += itertools.chain(*client.getBasePositionAndOrientation(body),
-                                 *client.getBaseVelocity(body))
+        found += itertools.chain(
+            *client.getBasePositionAndOrientation(body), *client.getBaseVelocity(body)
+        )
         for joint in range(client.getNumJoints(body)):
             angle, speed, reaction, torque = client.getJointState(body, joint)
             found += [angle, speed, *reaction, torque]
@@ -99,8 +120,12 @@ def bits(bullet):
                     speed = 3.0 + i + step / 1000.0
                     for joint, factor in ((0, 1.0), (1, 0.6 if step % 1000 else 1.1)):
                         client.setJointMotorControl2(
-                            number, joint, bullet.VELOCITY_CONTROL,
-                            targetVelocity=factor * speed, force=5.0)
+                            number,
+                            joint,
+                            bullet.VELOCITY_CONTROL,
+                            targetVelocity=factor * speed,
+                            force=5.0,
+                        )
             client.stepSimulation()
             if step % EVERY == 0:
                 numbers = readings(client, bodies)

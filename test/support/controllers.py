@@ -7,7 +7,8 @@ from .recorded import DATA
 
 RECORDED = json.loads((DATA / 'controllers.json').read_text())
 EFFORT, POSITION, VELOCITY = (
-    f'hardware_interface/{kind}JointInterface' for kind in ('Effort', 'Position', 'Velocity'))
+    f'hardware_interface/{kind}JointInterface' for kind in ('Effort', 'Position', 'Velocity')
+)
 _TEXT = (DATA / 'robots' / 'twolink.urdf').read_text()
 
 
@@ -20,8 +21,9 @@ def spawn_arm(world, interface=EFFORT, gains=None, change=lambda text: text, lim
     """Spawn the arm; return it, and its controller manager."""
     model = world.spawn(arm(interface, change), name='arm')
     plugin = model.plugin('gazebo_ros_control')
-    plugin.configure(parameters={
-        'gazebo_ros_control': {'pid_gains': gains or {}}, 'joint_limits': limits or {}})
+    plugin.configure(
+        parameters={'gazebo_ros_control': {'pid_gains': gains or {}}, 'joint_limits': limits or {}}
+    )
     return model, plugin.manager
 
 

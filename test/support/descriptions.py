@@ -15,8 +15,11 @@ POSITIONS = st.floats(-5.0, 5.0)  # [m]
 ANGLES = st.floats(-math.pi, math.pi)  # [rad]
 MASSES = st.floats(1e-3, 1e3)  # [kg]
 MOMENTS = st.floats(1e-4, 10.0)  # [kg m^2]
-NAMES = st.text(st.characters(whitelist_categories=('L', 'N'), whitelist_characters='_-/ .:'),
-                min_size=1, max_size=12)
+NAMES = st.text(
+    st.characters(whitelist_categories=('L', 'N'), whitelist_characters='_-/ .:'),
+    min_size=1,
+    max_size=12,
+)
 NAMES = NAMES.map(str.strip).filter(lambda name: name not in ('', 'world'))
 JOINT_TYPES = ('fixed', 'fixed', 'continuous', 'revolute', 'prismatic', 'floating', 'planar')
 
@@ -147,8 +150,14 @@ def _urdf_joint(draw, robot, name, kind, parent, link, place: Origin) -> None:
     if kind in ('continuous', 'revolute', 'prismatic'):
         child(joint, 'axis', xyz=_axis(draw))
         lower, upper = sorted(draw(st.tuples(ANGLES, ANGLES)))
-        child(joint, 'limit', lower=repr(lower), upper=repr(upper),
-              effort=repr(draw(st.floats(0.0, 100.0))), velocity='10')
+        child(
+            joint,
+            'limit',
+            lower=repr(lower),
+            upper=repr(upper),
+            effort=repr(draw(st.floats(0.0, 100.0))),
+            velocity='10',
+        )
         child(joint, 'dynamics', damping=repr(draw(st.floats(0.0, 1.0))))
 
 
@@ -166,14 +175,18 @@ def _urdf_shape(draw, geometry) -> None:
 def _gazebo_blocks(draw, robot, names: list[str]) -> None:
     for name in draw(st.lists(st.sampled_from(names), max_size=3)):
         block = child(robot, 'gazebo', reference=name)
-        tag, values = draw(st.sampled_from((
-            ('mu1', st.floats(0.0, 5.0).map(repr)),
-            ('kp', st.floats(1e3, 1e15).map(repr)),
-            ('kd', st.floats(0.0, 1e3).map(repr)),
-            ('selfCollide', st.sampled_from(('true', 'false'))),
-            ('turnGravityOff', st.sampled_from(('true', 'false'))),
-            ('material', st.sampled_from(('Gazebo/Red', 'Gazebo/NoSuchColour'))),
-        )))
+        tag, values = draw(
+            st.sampled_from(
+                (
+                    ('mu1', st.floats(0.0, 5.0).map(repr)),
+                    ('kp', st.floats(1e3, 1e15).map(repr)),
+                    ('kd', st.floats(0.0, 1e3).map(repr)),
+                    ('selfCollide', st.sampled_from(('true', 'false'))),
+                    ('turnGravityOff', st.sampled_from(('true', 'false'))),
+                    ('material', st.sampled_from(('Gazebo/Red', 'Gazebo/NoSuchColour'))),
+                )
+            )
+        )
         child(block, tag, draw(values))
     if draw(st.booleans()):
         child(child(robot, 'gazebo'), 'static', draw(st.sampled_from(('true', 'false'))))
@@ -197,8 +210,9 @@ def sdfs(draw) -> Description:
 
 def _sdf_model(draw, model, frame: np.ndarray, description: Description) -> list[str]:
     """Fill a <model> whose pose is `frame`; return the names of its links."""
-    names = draw(st.lists(NAMES.filter(lambda name: '::' not in name), min_size=1, max_size=5,
-                          unique=True))
+    names = draw(
+        st.lists(NAMES.filter(lambda name: '::' not in name), min_size=1, max_size=5, unique=True)
+    )
     for name in names:
         link, place, centre = child(model, 'link', name=name), draw(ORIGINS), draw(ORIGINS)
         child(link, 'pose', words((*place.xyz, *place.rpy)))
@@ -214,8 +228,15 @@ def _sdf_model(draw, model, frame: np.ndarray, description: Description) -> list
             size = draw(st.tuples(*[LENGTHS] * 3))
             child(child(geometry, 'box'), 'size', words(size))
     description.links += len(names)
-    pairs = draw(st.lists(st.tuples(*[st.sampled_from(names)] * 2).filter(lambda p: p[0] != p[1]),
-                          max_size=4)) if len(names) > 1 else []
+    pairs = (
+        draw(
+            st.lists(
+                st.tuples(*[st.sampled_from(names)] * 2).filter(lambda p: p[0] != p[1]), max_size=4
+            )
+        )
+        if len(names) > 1
+        else []
+    )
     for i, (parent, link) in enumerate(pairs):
         kind = draw(st.sampled_from(('fixed', 'revolute', 'prismatic', 'continuous')))
         joint = child(model, 'joint', name=f'joint {i} of {parent}', type=kind)

@@ -34,8 +34,11 @@ def fake_model(wheel_collisions=(), names=('left', 'right')):
     """Return a model with wheels in a new world; left ones are at y = 0.4 m, right ones at -0.4."""
     side = from_rpy(-math.pi / 2, 0.0, 0.0)
     links = [
-        LinkSpec(f'{name}_link', Pose((0.1, -0.4 if 'right' in name else 0.4, 0.2), side),
-                 collisions=wheel_collisions)
+        LinkSpec(
+            f'{name}_link',
+            Pose((0.1, -0.4 if 'right' in name else 0.4, 0.2), side),
+            collisions=wheel_collisions,
+        )
         for name in names
     ]
     joints = tuple(JointSpec(name, 'revolute', 'base', f'{name}_link') for name in names)
@@ -85,8 +88,9 @@ def turn(plugin, **speeds):
 
 def rim_speeds(plugin):
     """Return the rim speeds of the wheels, left and right [m/s]."""
-    return tuple(joint.velocity * plugin.wheel_diameter / 2
-                 for joint in plugin.model.joints.values())
+    return tuple(
+        joint.velocity * plugin.wheel_diameter / 2 for joint in plugin.model.joints.values()
+    )
 
 
 def collect(output):

@@ -37,11 +37,20 @@ class FakeEngine(PhysicsEngine):
     def add(self, model, pose):
         spec, root = model.spec, model.spec.links[0].name
         names = [joint.name for joint in spec.joints]
-        self.bodies.append(SimpleNamespace(
-            spec=spec, pose=pose, twist=Twist(), roots=[root], joints=set(names),
-            mass_scale=1.0, friction_scales={},
-            fixed_roots={root} if spec.static else set(),
-            state={name: [0.0, 0.0] for name in names}, motors=dict.fromkeys(names, (0.0, 0.0))))
+        self.bodies.append(
+            SimpleNamespace(
+                spec=spec,
+                pose=pose,
+                twist=Twist(),
+                roots=[root],
+                joints=set(names),
+                mass_scale=1.0,
+                friction_scales={},
+                fixed_roots={root} if spec.static else set(),
+                state={name: [0.0, 0.0] for name in names},
+                motors=dict.fromkeys(names, (0.0, 0.0)),
+            )
+        )
         self.placements += 1
         return self.bodies[-1]
 
@@ -64,8 +73,11 @@ class FakeEngine(PhysicsEngine):
         return not all(map(math.isfinite, (*body.pose.position, *body.twist.linear)))
 
     def motion(self, body):
-        return Motion({body.roots[0]: (body.pose, body.twist)},
-                      {name: tuple(state) for name, state in body.state.items()}, body.motors)
+        return Motion(
+            {body.roots[0]: (body.pose, body.twist)},
+            {name: tuple(state) for name, state in body.state.items()},
+            body.motors,
+        )
 
     def set_motion(self, body, motion):
         ((body.pose, body.twist),) = motion.roots.values()

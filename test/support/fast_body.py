@@ -12,8 +12,10 @@ from rosbots_description.sim.physics.bullet.fast_rotation import FastBodies
 DT, GRAVITY = 0.002, (0.5, -1.0, -9.8)
 BODY, CLIENT, GROUND, OTHER = 4, 2, 0, 7
 BASE, LINK = Mass(-1, 3.0, (0.1, 0.2, 0.3), True), Mass(0, 2.0, (0.04, 0.05, 0.06), True)
-POSES = {-1: ((1.0, 2.0, 3.0), from_rpy(0.3, -0.7, 1.1)),
-         0: ((1.5, 1.0, 2.0), from_rpy(2.0, 0.4, 0.2))}
+POSES = {
+    -1: ((1.0, 2.0, 3.0), from_rpy(0.3, -0.7, 1.1)),
+    0: ((1.5, 1.0, 2.0), from_rpy(2.0, 0.4, 0.2)),
+}
 TWISTS = {-1: ((1.0, -2.0, 0.5), (7.0, 30.0, -4.0)), 0: ((-1.0, 3.0, 2.0), (5.0, -20.0, 9.0))}
 JOINT = 0.4, 3.0, 0.0  # position [rad], velocity [rad/s], effort of its motor [N m]
 
@@ -34,9 +36,14 @@ class Bullet:
     def called(self):
         """Return the functions by the names that PyBullet gives them."""
         return SimpleNamespace(
-            getBasePositionAndOrientation=self.pose, getBaseVelocity=self.velocity,
-            getLinkStates=self.links, getJointStates=self.joints, getContactPoints=self.contacts,
-            resetBaseVelocity=self.set_velocity, resetJointStatesMultiDof=self.set_joints)
+            getBasePositionAndOrientation=self.pose,
+            getBaseVelocity=self.velocity,
+            getLinkStates=self.links,
+            getJointStates=self.joints,
+            getContactPoints=self.contacts,
+            resetBaseVelocity=self.set_velocity,
+            resetJointStatesMultiDof=self.set_joints,
+        )
 
     def pose(self, number, client):
         assert (number, client) == (BODY, CLIENT)
@@ -72,14 +79,17 @@ class Bullet:
         """Scale all velocities relative to the centre of mass, and those of joints."""
         drift = drift_of(self.twists)
         for index, (linear, angular) in self.twists.items():
-            self.twists[index] = (tuple(drift + factor * (np.array(linear) - drift)),
-                                  tuple(factor * np.array(angular)))
+            self.twists[index] = (
+                tuple(drift + factor * (np.array(linear) - drift)),
+                tuple(factor * np.array(angular)),
+            )
 
 
 def drift_of(twists):
     """Return the velocity of the centre of mass [m/s]."""
     return (BASE.mass * np.array(twists[-1][0]) + LINK.mass * np.array(twists[0][0])) / (
-        BASE.mass + LINK.mass)
+        BASE.mass + LINK.mass
+    )
 
 
 def energies_of(twists, gravity=GRAVITY):
@@ -91,15 +101,17 @@ def energies_of(twists, gravity=GRAVITY):
         potential -= part.mass * float(np.dot(gravity, middle))
         turning = rotation_matrix(turn).T @ angular
         kinetic += 0.5 * part.mass * float(np.dot(linear, linear)) + 0.5 * sum(
-            moment * rate**2 for moment, rate in zip(part.moments, turning, strict=True))
+            moment * rate**2 for moment, rate in zip(part.moments, turning, strict=True)
+        )
     drift = drift_of(twists)
     carried = 0.5 * (BASE.mass + LINK.mass) * float(drift @ drift)
     return potential + kinetic, kinetic - carried
 
 
 def masses(stiffness=0.0, damping=0.0, reference=0.0, is_fixed=False, unbalanced=(0,)):
-    return Masses((BASE, LINK), (0,), (damping,), (stiffness,), (reference,), (1e-6,), unbalanced,
-                  is_fixed)
+    return Masses(
+        (BASE, LINK), (0,), (damping,), (stiffness,), (reference,), (1e-6,), unbalanced, is_fixed
+    )
 
 
 SINGLE = Masses((Mass(-1, 1.0, (0.1, 0.2, 0.3), True),), (), (), (), (), (), (), False)

@@ -59,9 +59,11 @@ class Trials:
         path = self._write(f'mesh{suffix}', content)
         shape = f'<geometry><mesh filename="file://{path}"/></geometry>'
         with World.empty() as world:
-            spawn = (f'<robot name="it"><link name="a"><inertial><mass value="1"/><inertia ixx="1" '
-                     'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><visual>'
-                     f'{shape}</visual><collision>{shape}</collision></link></robot>')
+            spawn = (
+                f'<robot name="it"><link name="a"><inertial><mass value="1"/><inertia ixx="1" '
+                'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><visual>'
+                f'{shape}</visual><collision>{shape}</collision></link></robot>'
+            )
             verdict = self._tried(lambda: world.spawn(spawn, z=1.0), world)
             return REFUSED if world.model('it').spec.left_out else verdict
 
@@ -103,8 +105,9 @@ class Trials:
     def _write(self, name: str, content: bytes | str) -> str:
         path = os.path.join(self._folder.name, name)
         with open(path, 'wb') as file:
-            file.write(content if isinstance(content, bytes)
-                       else content.encode('utf-8', 'surrogatepass'))
+            file.write(
+                content if isinstance(content, bytes) else content.encode('utf-8', 'surrogatepass')
+            )
         return path
 
 

@@ -84,13 +84,16 @@ def _link(name: str, inside: str = '') -> str:
 
 
 def _joint(name: str, parent: str, child: str, kind: str = 'fixed', inside: str = '') -> str:
-    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-            f'{inside}</joint>\n')
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'{inside}</joint>\n'
+    )
 
 
 def _mesh(path: str | os.PathLike) -> str:
-    return _robot(_link(
-        'a', f'<collision><geometry><mesh filename="file://{path}"/></geometry></collision>'))
+    return _robot(
+        _link('a', f'<collision><geometry><mesh filename="file://{path}"/></geometry></collision>')
+    )
 
 
 def _sdf(inside: str) -> str:
@@ -158,8 +161,9 @@ def dollars_that_never_close(_: Path) -> str:
 @_made('urdf')
 def long_attribute(_: Path) -> str:
     """A number of a million digits and a word; the error message must not quote it all."""
-    return _robot(_link('a', _BALL.replace(
-        '<geometry>', f'<origin xyz="{"9" * 1_000_000} x"/><geometry>')))
+    return _robot(
+        _link('a', _BALL.replace('<geometry>', f'<origin xyz="{"9" * 1_000_000} x"/><geometry>'))
+    )
 
 
 @_made('urdf')
@@ -171,15 +175,19 @@ def long_name(_: Path) -> str:
 @_made('urdf')
 def long_chain_of_joints(_: Path) -> str:
     """One joint more than the engine can hold."""
-    return _robot(*(_link(f'l{i}') for i in range(129)),
-                  *(_joint(f'j{i}', f'l{i}', f'l{i + 1}', 'continuous') for i in range(128)))
+    return _robot(
+        *(_link(f'l{i}') for i in range(129)),
+        *(_joint(f'j{i}', f'l{i}', f'l{i + 1}', 'continuous') for i in range(128)),
+    )
 
 
 @_made('urdf')
 def long_chain_of_fixed_links(_: Path) -> str:
     """Ten thousand links on fixed joints, which are reduced to one."""
-    return _robot(*(_link(f'l{i}') for i in range(10_000)),
-                  *(_joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(9_999)))
+    return _robot(
+        *(_link(f'l{i}') for i in range(10_000)),
+        *(_joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(9_999)),
+    )
 
 
 @_made('urdf')
@@ -197,8 +205,10 @@ def many_links_in_sdf(_: Path) -> str:
 @_made('urdf')
 def many_free_links(_: Path) -> str:
     """Links on floating joints."""
-    return _robot(_link('a'), *(
-        _link(f'l{i}', _BALL) + _joint(f'j{i}', 'a', f'l{i}', 'floating') for i in range(5_000)))
+    return _robot(
+        _link('a'),
+        *(_link(f'l{i}', _BALL) + _joint(f'j{i}', 'a', f'l{i}', 'floating') for i in range(5_000)),
+    )
 
 
 @_made('urdf')
@@ -210,26 +220,39 @@ def many_shapes(_: Path) -> str:
 @_made('urdf')
 def many_surfaces(_: Path) -> str:
     """More surfaces on one link than the engine allows auxiliary links."""
-    return _robot(_link('a'), *(
-        _link(f'l{i}', _BALL) + _joint(f'j{i}', 'a', f'l{i}')
-        + f'<gazebo reference="l{i}"><mu1>{0.001 * i:.3f}</mu1></gazebo>' for i in range(140)))
+    return _robot(
+        _link('a'),
+        *(
+            _link(f'l{i}', _BALL)
+            + _joint(f'j{i}', 'a', f'l{i}')
+            + f'<gazebo reference="l{i}"><mu1>{0.001 * i:.3f}</mu1></gazebo>'
+            for i in range(140)
+        ),
+    )
 
 
 @_made('sdf')
 def many_surfaces_that_stand(_: Path) -> str:
     """The same in a static model."""
-    return _sdf('<static>1</static><link name="l">' + ''.join(
-        f'<collision name="c{i}"><geometry><sphere><radius>0.01</radius></sphere></geometry>'
-        f'<surface><friction><ode><mu>{0.001 * i:.3f}</mu></ode></friction></surface></collision>'
-        for i in range(140)) + '</link>')
+    return _sdf(
+        '<static>1</static><link name="l">'
+        + ''.join(
+            f'<collision name="c{i}"><geometry><sphere><radius>0.01</radius></sphere></geometry>'
+            f'<surface><friction><ode><mu>{0.001 * i:.3f}</mu></ode></friction></surface></collision>'
+            for i in range(140)
+        )
+        + '</link>'
+    )
 
 
 @_made('urdf')
 def thousands_of_unknown_references(_: Path) -> str:
     """Unknown names; a search for a similar one, each time among a thousand, would be slow."""
-    return _robot(_link('a'), *(
-        _link(f'l{i}') + _joint(f'j{i}', 'a', f'l{i}') for i in range(1000)), *(
-        f'<gazebo reference="k{i}"/>' for i in range(50_000)))
+    return _robot(
+        _link('a'),
+        *(_link(f'l{i}') + _joint(f'j{i}', 'a', f'l{i}') for i in range(1000)),
+        *(f'<gazebo reference="k{i}"/>' for i in range(50_000)),
+    )
 
 
 @_made('sdf')
@@ -263,9 +286,12 @@ def link_out_of_package(folder: Path) -> str:
 def model_that_climbs(folder: Path) -> str:
     """A model of the model path that refers to a file outside its folder."""
     (folder / 'climber').mkdir()
-    (folder / 'climber' / 'model.sdf').write_text(_sdf(
-        '<link name="a"><collision name="c"><geometry><mesh><uri>../secret.obj</uri></mesh>'
-        '</geometry></collision></link>'))
+    (folder / 'climber' / 'model.sdf').write_text(
+        _sdf(
+            '<link name="a"><collision name="c"><geometry><mesh><uri>../secret.obj</uri></mesh>'
+            '</geometry></collision></link>'
+        )
+    )
     (folder / 'secret.obj').write_text(f'{_TRIANGLE}f 1 2 3\n')
     return _include('model://climber')
 
@@ -275,7 +301,8 @@ def manifest_that_climbs(folder: Path) -> str:
     """A model.config that refers to a description outside its folder."""
     (folder / 'climber').mkdir()
     (folder / 'climber' / 'model.config').write_text(
-        '<model><sdf version="1.6">../../etc/passwd</sdf></model>')
+        '<model><sdf version="1.6">../../etc/passwd</sdf></model>'
+    )
     return _include('model://climber')
 
 
@@ -289,7 +316,8 @@ def mesh_of_a_million_triangles(_: Path) -> bytes:
     points = np.stack([x, y, np.sin(5 * x) * np.cos(3 * y)], axis=2).astype('<f4')
     corners = [points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]]
     triangles = np.zeros(
-        (2, (count - 1) ** 2), np.dtype([('n', '<f4', 3), ('c', '<f4', (3, 3)), ('a', '<u2')]))
+        (2, (count - 1) ** 2), np.dtype([('n', '<f4', 3), ('c', '<f4', (3, 3)), ('a', '<u2')])
+    )
     for i, chosen in enumerate(((0, 1, 2), (0, 2, 3))):
         triangles['c'][i] = np.stack([corners[c].reshape(-1, 3) for c in chosen], axis=1)
     return bytes(80) + struct.pack('<I', triangles.size) + triangles.tobytes()
@@ -298,7 +326,7 @@ def mesh_of_a_million_triangles(_: Path) -> bytes:
 @_made('stl')
 def mesh_of_garbage(_: Path) -> bytes:
     """Five megabytes of random bytes."""
-    return (b'\xff\x00garbage\x80' * 500_000)
+    return b'\xff\x00garbage\x80' * 500_000
 
 
 @_made('dae')
@@ -330,5 +358,8 @@ def mesh_too_big(folder: Path) -> str:
 @_made('world')
 def world_of_one_name(_: Path) -> str:
     """Twenty thousand models of one name, all of which must be renamed."""
-    return ('<sdf version="1.6"><world name="w">'
-            + '<model name="m"><link name="l"/></model>' * 20_000 + '</world></sdf>')
+    return (
+        '<sdf version="1.6"><world name="w">'
+        + '<model name="m"><link name="l"/></model>' * 20_000
+        + '</world></sdf>'
+    )

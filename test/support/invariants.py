@@ -43,8 +43,12 @@ def check_spec(spec: ModelSpec) -> None:
     for joint in spec.joints:
         assert joint.child in names
         assert joint.parent in (*names, 'world')
-    reached = [link.name for tree in kinematic_trees(spec) for link in tree.links
-               if not link.name.startswith('world of ')]
+    reached = [
+        link.name
+        for tree in kinematic_trees(spec)
+        for link in tree.links
+        if not link.name.startswith('world of ')
+    ]
     assert sorted(reached) == sorted(names)
 
 
@@ -62,11 +66,13 @@ def total(spec: ModelSpec) -> tuple[float, np.ndarray]:
     for link in spec.links:
         mass += link.inertial.mass
         x, y, z, w = link.pose.orientation
-        turn = np.array([
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ])
+        turn = np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+            ]
+        )
         place = turn @ link.inertial.pose.position + link.pose.position
         moment = moment + link.inertial.mass * place
     return mass, moment / mass

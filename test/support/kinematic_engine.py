@@ -55,8 +55,14 @@ class KinematicBody:
         """Return speed ahead [m/s] and yaw rate [rad/s] at which the wheels of a root roll."""
         rows, speeds = [], []
         for joint in self.joints.values():
-            rim = next((shape for shape in self.links[joint.child].collisions
-                        if isinstance(shape.geometry, Cylinder)), None)
+            rim = next(
+                (
+                    shape
+                    for shape in self.links[joint.child].collisions
+                    if isinstance(shape.geometry, Cylinder)
+                ),
+                None,
+            )
             if rim and self.motors[joint.name][1] > 0.0 and self.root(joint.child) == root:
                 wheel = compose(inverse(self.poses[root]), self.pose(joint.child))
                 along, across, _ = cross(rotate(wheel.orientation, joint.axis_in_child), (0, 0, 1))
@@ -73,8 +79,10 @@ class KinematicBody:
             arc = (way * math.cos(half), way * math.sin(half), 0.0)
             turn = (0.0, 0.0, math.sin(half), math.cos(half))
             self.poses[root] = pose = compose(self.poses[root], Pose(arc, turn))
-            self.twists[root] = Twist(rotate(pose.orientation, (speed, 0.0, 0.0)),
-                                      rotate(pose.orientation, (0.0, 0.0, rate)))
+            self.twists[root] = Twist(
+                rotate(pose.orientation, (speed, 0.0, 0.0)),
+                rotate(pose.orientation, (0.0, 0.0, rate)),
+            )
         for joint in self.joints:
             self.positions[joint] += self.speed(joint) * dt
 

@@ -78,8 +78,9 @@ class Shown:
 def missing(expected: Iterable[str], output: str) -> list[str]:
     """Return those of the expected lines that an output does not have."""
     lines = [line.strip() for line in COLOURS.sub('', output).splitlines()]
-    return [line for line in expected
-            if not any(re.fullmatch(pattern(line), shown) for shown in lines)]
+    return [
+        line for line in expected if not any(re.fullmatch(pattern(line), shown) for shown in lines)
+    ]
 
 
 def pattern(line: str) -> str:
@@ -98,11 +99,13 @@ def read_lesson(path: Path) -> list[File | Commands | Shown]:
         where = f'{path.name}, line {line}'
         saved, added = SAVED.search(sentence), ADDED.search(sentence)
         if language == 'bash':
-            commands = Commands(text, line, bool(GOES_ON.search(sentence)),
-                                bool(FAILS.search(sentence)))
+            commands = Commands(
+                text, line, bool(GOES_ON.search(sentence)), bool(FAILS.search(sentence))
+            )
             if text.startswith(ENDLESS) and not commands.goes_on and not commands.fails:
-                raise LessonError(f'{where}: {text.split()[0]} goes on; say "in a terminal of its '
-                                  'own:" before it')
+                raise LessonError(
+                    f'{where}: {text.split()[0]} goes on; say "in a terminal of its own:" before it'
+                )
             if commands.goes_on and len(text.splitlines()) > 1:
                 raise LessonError(f'{where}: a terminal of its own takes one line')
             steps.append(commands)
@@ -121,8 +124,10 @@ def read_lesson(path: Path) -> list[File | Commands | Shown]:
             name = (saved or added)[1]
             steps.append(File(name, text, language, line, bool(added)))
         else:
-            raise LessonError(f'{where}: no test would do anything with a block of {language!r} '
-                              f'after {sentence!r}')
+            raise LessonError(
+                f'{where}: no test would do anything with a block of {language!r} '
+                f'after {sentence!r}'
+            )
     return steps
 
 

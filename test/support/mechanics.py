@@ -46,6 +46,7 @@ def falls(to: float, faces: bool = True) -> Motion:
     Args:
         faces: whether it lands as it fell, and does not tumble until it lies still.
     """
+
     def motion(first: Row, steps: int) -> State:
         height = first[3] - G * DT**2 * steps * (steps + 1) / 2  # semi-implicit Euler
         if height > to:
@@ -57,6 +58,7 @@ def falls(to: float, faces: bool = True) -> Motion:
 
 def tumbled(height: float, still: float = 1.5) -> Motion:
     """Return a tumbling cube: nothing is known until it has lain on a face for some time [s]."""
+
     def motion(_: Row, steps: int) -> State:
         if steps * DT < still:
             return State(UNKNOWN, ANY, UNKNOWN, UNKNOWN)
@@ -76,18 +78,27 @@ def pushed_to_tipping(first: Row, steps: int) -> State:
 
 def slides(begin: float, mu: float) -> Motion:
     """Return a body at rest that gets 1 m/s along x at a time [s], and is braked by friction."""
+
     def motion(first: Row, steps: int) -> State:
         time = max(0.0, steps * DT - begin)
         time = min(time, 1.0 / (mu * G)) if time else 0.0
         speed = 1.0 - mu * G * time if time else 0.0
-        return State((first[1] + time - mu * G * time**2 / 2, *first[2:4]), tuple(first[4:8]),
-                     (speed, 0.0, 0.0))
+        return State(
+            (first[1] + time - mu * G * time**2 / 2, *first[2:4]),
+            tuple(first[4:8]),
+            (speed, 0.0, 0.0),
+        )
 
     return motion
 
 
-def rolls(begin: float, inertia: float, radius: float, drag: float = 0.0,
-          pushes: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Motion:
+def rolls(
+    begin: float,
+    inertia: float,
+    radius: float,
+    drag: float = 0.0,
+    pushes: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Motion:
     """Return a round body that gets 1 m/s along x on mu 1, slides until it rolls, and rolls on.
 
     Args:
@@ -107,28 +118,37 @@ def rolls(begin: float, inertia: float, radius: float, drag: float = 0.0,
         pushed = min(max(0.0, steps * DT - pushes[0]), pushes[1])
         after = max(0.0, steps * DT - pushes[0] - pushes[1])
         speed = 1.0 - G * sliding - drag * G * rolling * on + pushes[2] * rolling * pushed
-        rolled = ((1.0 - G * until) * on - drag * G * rolling * on**2 / 2
-                  + pushes[2] * rolling * pushed * (pushed / 2 + after))
+        rolled = (
+            (1.0 - G * until) * on
+            - drag * G * rolling * on**2 / 2
+            + pushes[2] * rolling * pushed * (pushed / 2 + after)
+        )
         spin = speed / radius if on else G * sliding / inertia / radius
         turned = G * sliding**2 / (2 * inertia * radius) + rolled / radius
         half = turned / 2
-        return State((first[1] + sliding - G * sliding**2 / 2 + rolled, *first[2:4]),
-                     times((0.0, math.sin(half), 0.0, math.cos(half)), first[4:8]),
-                     (speed, 0.0, 0.0), (0.0, spin, 0.0))
+        return State(
+            (first[1] + sliding - G * sliding**2 / 2 + rolled, *first[2:4]),
+            times((0.0, math.sin(half), 0.0, math.cos(half)), first[4:8]),
+            (speed, 0.0, 0.0),
+            (0.0, spin, 0.0),
+        )
 
     return motion
 
 
 def times(a: Row, b: Row) -> tuple[float, ...]:
     """Return the product of two quaternions (x, y, z, w)."""
-    return (a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
-            a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
-            a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
-            a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2])
+    return (
+        a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+        a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+        a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+        a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2],
+    )
 
 
 def turns_not(after: float = 0.0) -> Motion:
     """Return a body of which only this is known, from a time [s] on."""
+
     def motion(_: Row, steps: int) -> State:
         return State(UNKNOWN, ANY, UNKNOWN, STILL if steps * DT > after else UNKNOWN)
 
@@ -178,10 +198,20 @@ class Rebounds(NamedTuple):
 
 
 REBOUNDS = (
-    Rebounds('bounce_plate', 'r0.8_on0.8', 0.8, 0.3,
-             'a rebound is 2 % higher here than in Gazebo, so the fifth is 40 ms later'),
-    Rebounds('bounce_plate', 'r0.8_on0.5', math.sqrt(0.8 * 0.5), 0.3,
-             'restitution is 0.63, the geometric mean; in Gazebo 0.75, as for 0.8 on 0'),
+    Rebounds(
+        'bounce_plate',
+        'r0.8_on0.8',
+        0.8,
+        0.3,
+        'a rebound is 2 % higher here than in Gazebo, so the fifth is 40 ms later',
+    ),
+    Rebounds(
+        'bounce_plate',
+        'r0.8_on0.5',
+        math.sqrt(0.8 * 0.5),
+        0.3,
+        'restitution is 0.63, the geometric mean; in Gazebo 0.75, as for 0.8 on 0',
+    ),
 )
 
 

@@ -82,7 +82,10 @@ def robot(name: str) -> Robot:
 
 
 def drive(
-    one: Robot, commands: Sequence[Command], duration: float, tuning: Tuning | None = None,
+    one: Robot,
+    commands: Sequence[Command],
+    duration: float,
+    tuning: Tuning | None = None,
     make_world: MakeWorld = empty_world,
 ) -> list[Sample]:
     """Return the motion after each step, from the first command on."""
@@ -110,12 +113,20 @@ def drive(
             yaw += math.remainder(yaw_of(moved.orientation) - yaw, math.tau)
             cos, sin = math.cos(heading), math.sin(heading)
             measured = relative(latest[0], odometry_start).position
-            samples.append(Sample(
-                k / 1000.0, *moved.position[:2], yaw, pose.position[2],
-                -math.asin(max(-1.0, min(1.0, rotate(pose.orientation, (1.0, 0.0, 0.0))[2]))),
-                cos * vx + sin * vy, cos * vy - sin * vx, turning, (*measured[:2], *latest[1]),
-                {name: joint.velocity for name, joint in model.joints.items()},
-            ))
+            samples.append(
+                Sample(
+                    k / 1000.0,
+                    *moved.position[:2],
+                    yaw,
+                    pose.position[2],
+                    -math.asin(max(-1.0, min(1.0, rotate(pose.orientation, (1.0, 0.0, 0.0))[2]))),
+                    cos * vx + sin * vy,
+                    cos * vy - sin * vx,
+                    turning,
+                    (*measured[:2], *latest[1]),
+                    {name: joint.velocity for name, joint in model.joints.items()},
+                )
+            )
         return samples
 
 
@@ -198,8 +209,18 @@ def compare_drive(
     for one, quantity, value, reason in DRIVES:
         if one == scene:
             tolerance = _tolerance(quantity, value, rim, bool(turning))
-            found.append(Difference(scene, quantity, tolerance[0], value, ours[quantity],
-                                    tolerance[1], reference='mechanics', reason=reason))
+            found.append(
+                Difference(
+                    scene,
+                    quantity,
+                    tolerance[0],
+                    value,
+                    ours[quantity],
+                    tolerance[1],
+                    reference='mechanics',
+                    reason=reason,
+                )
+            )
     return found + list(_compare_paths(scene, data, samples, floor))
 
 
@@ -251,8 +272,9 @@ def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:
     ]
 
 
-def ramp_delays(samples: Sequence[Sample], speeds: Sequence[Sequence[float]], start: float,
-                rising: bool) -> list[float]:
+def ramp_delays(
+    samples: Sequence[Sample], speeds: Sequence[Sequence[float]], start: float, rising: bool
+) -> list[float]:
     """Return the delays against Gazebo at which the recorded speeds are passed [s].
 
     Args:
@@ -263,6 +285,7 @@ def ramp_delays(samples: Sequence[Sample], speeds: Sequence[Sequence[float]], st
     passing = [sample for sample in samples if sample.time > start]
     return [
         next(s.time for s in passing if (s.forward >= speed if rising else s.forward <= speed))
-        - start - time
+        - start
+        - time
         for time, speed in speeds
     ]

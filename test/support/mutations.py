@@ -9,28 +9,133 @@ from hypothesis import strategies as st
 from lxml import etree
 
 # Replacements for numbers, names and flags.
-ADVERSARIAL = st.sampled_from((
-    '', ' ', '0', '-0', '-1', '1e999', '-1e999', '1e308', '-1e308', '1e-320', '1e16', 'nan',
-    'NaN', 'inf', '-inf', '1,5', '0x10', '1_000', '1e', '1.2.3', '١٢', '1 2', '1 2 3', '0 0 0',
-    '1e308 1e308 1e308', '0 0 0 0 0 nan', '1 2 3 4 5 6 7', 'true', 'world', '__model__', '::',
-    'a::b', '\x00', 'a\x00b', '\n', 'a\nb', '1\n2', '\x7f', '\u202e', '\u2028', '\x85', 'ünï',
-    '🤖', '\ufeff', '\ud800', '&amp;', '&lol;', '${x}', '$(find x)', '../../etc/passwd',
-    'package://', 'package://nobody/x.dae', 'model://', 'file:///', '/dev/zero', '/', '.',
-    'a' * 999, 'a' * 1001, '9' * 400, 'x' * 100_000, '1 ' * 5000,
-)) | st.text(max_size=8)
-RAW = st.text() | st.binary() | st.sampled_from((
-    '<robot', '<robot/>', '<sdf/>', '<?xml?>', '<!DOCTYPE a [<!ENTITY b "c">]><robot/>', '<a:b/>',
-    '<robot>' * 300, '<sdf version="x"><model/></sdf>', '<robot><link/></robot>', b'\xff\xfe<\x00',
-    '<sdf><world><include/></world></sdf>', '\x00', '<robot name="&#0;"/>', '<robot>]]></robot>',
-))
-WORDS = st.sampled_from([struct.pack('<f', x) for x in (
-    0.0, -0.0, 1e-40, 1e30, -3e38, float('nan'), float('inf'))] + [
-    struct.pack('<I', n) for n in (1, 2, 127, 2**31 - 1, 2**31, 2**32 - 1)]) | st.binary(
-    min_size=4, max_size=4)
-VALUES = ADVERSARIAL | st.sampled_from((
-    None, True, False, 0, -1, 1, 10**9, 10**400, -(2**63), 0.5, -0.5, 1e-300, 1e308, float('nan'),
-    float('inf'), float('-inf'), b'x', [], {}, [[]], [{}], {'': ''}, {1: 2}, {'x': None},
-    [1, 2, 3], {'x': 1.0}, {'grid': [1, 2]}, {'uniform': [0, 1]}, '$force', '$nothing', '${x}'))
+ADVERSARIAL = st.sampled_from(
+    (
+        '',
+        ' ',
+        '0',
+        '-0',
+        '-1',
+        '1e999',
+        '-1e999',
+        '1e308',
+        '-1e308',
+        '1e-320',
+        '1e16',
+        'nan',
+        'NaN',
+        'inf',
+        '-inf',
+        '1,5',
+        '0x10',
+        '1_000',
+        '1e',
+        '1.2.3',
+        '١٢',
+        '1 2',
+        '1 2 3',
+        '0 0 0',
+        '1e308 1e308 1e308',
+        '0 0 0 0 0 nan',
+        '1 2 3 4 5 6 7',
+        'true',
+        'world',
+        '__model__',
+        '::',
+        'a::b',
+        '\x00',
+        'a\x00b',
+        '\n',
+        'a\nb',
+        '1\n2',
+        '\x7f',
+        '\u202e',
+        '\u2028',
+        '\x85',
+        'ünï',
+        '🤖',
+        '\ufeff',
+        '\ud800',
+        '&amp;',
+        '&lol;',
+        '${x}',
+        '$(find x)',
+        '../../etc/passwd',
+        'package://',
+        'package://nobody/x.dae',
+        'model://',
+        'file:///',
+        '/dev/zero',
+        '/',
+        '.',
+        'a' * 999,
+        'a' * 1001,
+        '9' * 400,
+        'x' * 100_000,
+        '1 ' * 5000,
+    )
+) | st.text(max_size=8)
+RAW = (
+    st.text()
+    | st.binary()
+    | st.sampled_from(
+        (
+            '<robot',
+            '<robot/>',
+            '<sdf/>',
+            '<?xml?>',
+            '<!DOCTYPE a [<!ENTITY b "c">]><robot/>',
+            '<a:b/>',
+            '<robot>' * 300,
+            '<sdf version="x"><model/></sdf>',
+            '<robot><link/></robot>',
+            b'\xff\xfe<\x00',
+            '<sdf><world><include/></world></sdf>',
+            '\x00',
+            '<robot name="&#0;"/>',
+            '<robot>]]></robot>',
+        )
+    )
+)
+WORDS = st.sampled_from(
+    [struct.pack('<f', x) for x in (0.0, -0.0, 1e-40, 1e30, -3e38, float('nan'), float('inf'))]
+    + [struct.pack('<I', n) for n in (1, 2, 127, 2**31 - 1, 2**31, 2**32 - 1)]
+) | st.binary(min_size=4, max_size=4)
+VALUES = ADVERSARIAL | st.sampled_from(
+    (
+        None,
+        True,
+        False,
+        0,
+        -1,
+        1,
+        10**9,
+        10**400,
+        -(2**63),
+        0.5,
+        -0.5,
+        1e-300,
+        1e308,
+        float('nan'),
+        float('inf'),
+        float('-inf'),
+        b'x',
+        [],
+        {},
+        [[]],
+        [{}],
+        {'': ''},
+        {1: 2},
+        {'x': None},
+        [1, 2, 3],
+        {'x': 1.0},
+        {'grid': [1, 2]},
+        {'uniform': [0, 1]},
+        '$force',
+        '$nothing',
+        '${x}',
+    )
+)
 _MARK = '@@{}@@'  # placeholder of a text that lxml would not write
 
 
@@ -56,8 +161,11 @@ def damaged(draw, text: str, most: int = 4) -> str:
 def spoiled(draw, text: str) -> str:
     """Return the document with one wrong attribute or text."""
     root = etree.fromstring(text.encode())
-    places = [(element, key) for element in root.iter(etree.Element)
-              for key in (*sorted(element.attrib), *([] if len(element) else ['']))]
+    places = [
+        (element, key)
+        for element in root.iter(etree.Element)
+        for key in (*sorted(element.attrib), *([] if len(element) else ['']))
+    ]
     element, key = places[draw(st.integers(0, len(places) - 1))]
     if key:
         element.set(key, _MARK.format(0))
@@ -84,7 +192,7 @@ def damaged_lines(draw, text: str) -> str:
             case 'other word':
                 line[at] = draw(st.sampled_from(draw(st.sampled_from(lines))))
             case _:
-                del line[at + 1:], lines[draw(st.integers(1, len(lines))):]
+                del line[at + 1 :], lines[draw(st.integers(1, len(lines))) :]
     return '\n'.join(' '.join(line) for line in lines)
 
 
@@ -95,7 +203,7 @@ def damaged_bytes(draw, data: bytes) -> bytes:
         at = draw(st.integers(0, len(data) - 1) | st.sampled_from(range(0, len(data), 4)))
         match draw(st.sampled_from(('word', 'word', 'cut', 'insert', 'double'))):
             case 'word':
-                data = data[:at] + draw(WORDS) + data[at + 4:]
+                data = data[:at] + draw(WORDS) + data[at + 4 :]
             case 'cut':
                 data = data[:at]
             case 'insert':
@@ -132,8 +240,13 @@ def damaged_tree(draw, document: Any) -> Any:
 
 def _places(document: Any) -> Iterator[tuple[Any, Any]]:
     """Yield the containers and keys of all values within."""
-    keys = document if isinstance(document, dict) else range(len(document)) \
-        if isinstance(document, list) else ()
+    keys = (
+        document
+        if isinstance(document, dict)
+        else range(len(document))
+        if isinstance(document, list)
+        else ()
+    )
     for key in keys:
         yield document, key
         yield from _places(document[key])
@@ -156,8 +269,11 @@ def _double(_draw, _root, element, _texts) -> None:
 
 def _move(draw, root, element, _texts) -> None:
     """Move an element elsewhere, but not into itself."""
-    others = [other for other in root.iter(etree.Element)
-              if element not in (other, *other.iterancestors())]
+    others = [
+        other
+        for other in root.iter(etree.Element)
+        if element not in (other, *other.iterancestors())
+    ]
     if others and element is not root:
         others[draw(st.integers(0, len(others) - 1))].append(element)
 
@@ -189,5 +305,15 @@ def _spoil_text(draw, _root, element, texts) -> None:
     element.text = _adversarial(draw, texts)
 
 
-_DAMAGES = (_drop, _double, _move, _rename, _drop_attribute, _spoil_attribute, _spoil_attribute,
-            _borrow_attribute, _spoil_text, _spoil_text)
+_DAMAGES = (
+    _drop,
+    _double,
+    _move,
+    _rename,
+    _drop_attribute,
+    _spoil_attribute,
+    _spoil_attribute,
+    _borrow_attribute,
+    _spoil_text,
+    _spoil_text,
+)

@@ -87,8 +87,11 @@ def _events(world: World, events: list) -> Iterator[tuple[int, int, Callable[[],
             twist = Twist(tuple(values[:3]), tuple(values[3:]))
             yield first, last, lambda m=thing.model, t=twist: m.set_twist(t)
         elif kind == 'force':
-            yield first, last, lambda link=thing, v=values: link.apply_wrench(
-                tuple(v[:3]), tuple(v[3:]))
+            yield (
+                first,
+                last,
+                lambda link=thing, v=values: link.apply_wrench(tuple(v[:3]), tuple(v[3:])),
+            )
         elif kind == 'jpos':
             yield first, last, lambda j=thing, v=values: j.set_position(v[0])
         elif kind == 'jforce':
@@ -109,23 +112,48 @@ def _compare_link(scene: str, link: str, rows: list, ours: dict) -> Iterator[Dif
     turned = max(_angle(rows[0][4:8], row[4:8]) for row in rows)
     fast = max(math.hypot(*row[8:11]) for row in rows)
     spun = max(math.hypot(*row[11:14]) for row in rows)
-    for (quantity, unit, value), tolerance in zip(_most_apart(link, rows, ours), (
-            max(PLACE_SHARE * far, PLACE_FLOOR), max(ANGLE_SHARE * turned, ANGLE_FLOOR),
-            max(SPEED_SHARE * fast, SPEED_FLOOR), max(SPEED_SHARE * spun, RATE_FLOOR)),
-            strict=True):
+    for (quantity, unit, value), tolerance in zip(
+        _most_apart(link, rows, ours),
+        (
+            max(PLACE_SHARE * far, PLACE_FLOOR),
+            max(ANGLE_SHARE * turned, ANGLE_FLOOR),
+            max(SPEED_SHARE * fast, SPEED_FLOOR),
+            max(SPEED_SHARE * spun, RATE_FLOOR),
+        ),
+        strict=True,
+    ):
         yield Difference(scene, f'{link} {quantity}', unit, 0.0, value, tolerance)
 
 
 def _compare_motion(motions: Motions, link: str, rows: list, ours: dict) -> Iterator[Difference]:
     """Compare with mechanics at the times of a recording."""
-    expected = [[time, *(number for numbers in motions.motion(rows[0], round(1000 * time) + 1)
-                         for number in numbers)] for time, *_ in rows]
+    expected = [
+        [
+            time,
+            *(
+                number
+                for numbers in motions.motion(rows[0], round(1000 * time) + 1)
+                for number in numbers
+            ),
+        ]
+        for time, *_ in rows
+    ]
     for (quantity, unit, value), floor in zip(
-            _most_apart(link, expected, ours), (PLACE_FLOOR, ANGLE_FLOOR, SPEED_FLOOR, RATE_FLOOR),
-            strict=True):
+        _most_apart(link, expected, ours),
+        (PLACE_FLOOR, ANGLE_FLOOR, SPEED_FLOOR, RATE_FLOOR),
+        strict=True,
+    ):
         if quantity in motions.quantities.split():
-            yield Difference(motions.scene, f'{link} {quantity}', unit, 0.0, value,
-                             motions.leeway * floor, reference='mechanics', reason=motions.reason)
+            yield Difference(
+                motions.scene,
+                f'{link} {quantity}',
+                unit,
+                0.0,
+                value,
+                motions.leeway * floor,
+                reference='mechanics',
+                reason=motions.reason,
+            )
 
 
 def _most_apart(link: str, rows: list, ours: dict) -> list[tuple[str, str, float]]:
@@ -141,15 +169,27 @@ def _most_apart(link: str, rows: list, ours: dict) -> list[tuple[str, str, float
 
 def _compare_rebounds(ball: Rebounds, ours: dict) -> Difference:
     """Compare the height that a rebound reaches, as a share of the one before, with e²."""
-    heights = [state[0].position[2] - ball.rest
-               for (link, _), state in sorted(ours.items(), key=lambda item: item[0][1])
-               if link == f'{ball.link}::link']
-    tops = [heights[0], *(b for a, b, c in zip(heights, heights[1:], heights[2:], strict=False)
-                          if a < b >= c)]
-    shares = [b / a for a, b in pairwise(tops[:BOUNCES + 1])]
+    heights = [
+        state[0].position[2] - ball.rest
+        for (link, _), state in sorted(ours.items(), key=lambda item: item[0][1])
+        if link == f'{ball.link}::link'
+    ]
+    tops = [
+        heights[0],
+        *(b for a, b, c in zip(heights, heights[1:], heights[2:], strict=False) if a < b >= c),
+    ]
+    shares = [b / a for a, b in pairwise(tops[: BOUNCES + 1])]
     worst = max(shares, key=lambda share: abs(share - ball.e**2))
-    return Difference(ball.scene, f'{ball.link}::link rebound', '1', ball.e**2, worst,
-                      REBOUND_SHARE * ball.e**2, reference='mechanics', reason=ball.reason)
+    return Difference(
+        ball.scene,
+        f'{ball.link}::link rebound',
+        '1',
+        ball.e**2,
+        worst,
+        REBOUND_SHARE * ball.e**2,
+        reference='mechanics',
+        reason=ball.reason,
+    )
 
 
 def _compare_joint(scene: str, joint: str, rows: list, ours: dict) -> Iterator[Difference]:
@@ -160,10 +200,12 @@ def _compare_joint(scene: str, joint: str, rows: list, ours: dict) -> Iterator[D
         faster = max(faster, abs(own[1] - velocity))
     reach = max(abs(position) for _, position, _ in rows)
     fast = max(abs(velocity) for *_, velocity in rows)
-    yield Difference(scene, f'{joint} position', 'rad|m', 0.0, apart,
-                     max(JOINT_SHARE * reach, JOINT_FLOOR))
-    yield Difference(scene, f'{joint} velocity', '/s', 0.0, faster,
-                     max(JOINT_SHARE * fast, JOINT_FLOOR))
+    yield Difference(
+        scene, f'{joint} position', 'rad|m', 0.0, apart, max(JOINT_SHARE * reach, JOINT_FLOOR)
+    )
+    yield Difference(
+        scene, f'{joint} velocity', '/s', 0.0, faster, max(JOINT_SHARE * fast, JOINT_FLOOR)
+    )
 
 
 def _apart(a, b) -> float:

@@ -106,9 +106,11 @@ def line(one: Difference) -> str:
     ).rstrip()
 
 
-HEADER = (f'{"share":>7}  {"scene":24} {"quantity":26} {"unit":5} {"reference":9} {"expected":>9} '
-          f'{"mechanics":>9} {"ours":>9} {"off by":>9} tolerance; share: of the tolerance; '
-          'off by: from the interval between both where there are two')
+HEADER = (
+    f'{"share":>7}  {"scene":24} {"quantity":26} {"unit":5} {"reference":9} {"expected":>9} '
+    f'{"mechanics":>9} {"ours":>9} {"off by":>9} tolerance; share: of the tolerance; '
+    'off by: from the interval between both where there are two'
+)
 
 
 @cache

@@ -7,14 +7,52 @@ from genpy import Duration, Message, Time
 from hypothesis import strategies as st
 from roslib.message import get_message_class
 
-NUMBERS = st.sampled_from((
-    0.0, -0.0, 1.0, -1.0, 0.5, 1e-3, 1e9, -1e9, 1e16, 1e154, 1e308, -1e308, 5e-324,
-    float('nan'), float('inf'), float('-inf'),
-)) | st.floats(-10.0, 10.0) | st.floats()
-TEXTS = st.sampled_from((
-    '', ' ', '::', 'a::b', '::box', 'box::', '\x00', 'box\x00', '\n', 'ünï', '🤖', 'a' * 100_000,
-    '%s%n', '/', '~', '../..', '<robot/>', 'nan',
-)) | st.text(st.characters(blacklist_categories=('Cs',)), max_size=10)
+NUMBERS = (
+    st.sampled_from(
+        (
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            0.5,
+            1e-3,
+            1e9,
+            -1e9,
+            1e16,
+            1e154,
+            1e308,
+            -1e308,
+            5e-324,
+            float('nan'),
+            float('inf'),
+            float('-inf'),
+        )
+    )
+    | st.floats(-10.0, 10.0)
+    | st.floats()
+)
+TEXTS = st.sampled_from(
+    (
+        '',
+        ' ',
+        '::',
+        'a::b',
+        '::box',
+        'box::',
+        '\x00',
+        'box\x00',
+        '\n',
+        'ünï',
+        '🤖',
+        'a' * 100_000,
+        '%s%n',
+        '/',
+        '~',
+        '../..',
+        '<robot/>',
+        'nan',
+    )
+) | st.text(st.characters(blacklist_categories=('Cs',)), max_size=10)
 _BITS = {f'{sign}int{bits}': (sign, bits) for sign in ('', 'u') for bits in (8, 16, 32, 64)}
 _BITS |= {'byte': ('', 8), 'char': ('u', 8)}
 _MOST = 2**31 - 1
@@ -46,7 +84,7 @@ def _values(kind: str, names: tuple[str, ...]) -> st.SearchStrategy:
         return st.lists(_values(item, names), min_size=least, max_size=most)
     if kind in _BITS:
         sign, bits = _BITS[kind]
-        least, most = (0, 2**bits - 1) if sign else (-2 ** (bits - 1), 2 ** (bits - 1) - 1)
+        least, most = (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
         return st.sampled_from((0, 1, 2, 50, least, most)) | st.integers(least, most)
     match kind:
         case 'bool':
@@ -61,7 +99,9 @@ def _values(kind: str, names: tuple[str, ...]) -> st.SearchStrategy:
             parts = st.tuples(st.integers(0, 3) | st.just(_MOST), st.integers(0, 999_999_999))
             return parts.map(lambda pair: Time(*pair))
         case 'duration':
-            parts = st.tuples(st.sampled_from((-1, 0, 1, _MOST, -_MOST - 1)) | st.integers(-3, 3),
-                              st.integers(0, 999_999_999))
+            parts = st.tuples(
+                st.sampled_from((-1, 0, 1, _MOST, -_MOST - 1)) | st.integers(-3, 3),
+                st.integers(0, 999_999_999),
+            )
             return parts.map(lambda pair: Duration(*pair))
     return messages(get_message_class(kind), names)

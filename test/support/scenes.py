@@ -192,22 +192,26 @@ def mirrored(spec: ModelSpec) -> ModelSpec:
         return Pose((x, 0.0, z), pose.orientation)
 
     base, *wheels = spec.links
-    links = [replace(
-        base,
-        inertial=replace(base.inertial, pose=centred(base.inertial.pose)),
-        collisions=tuple(
-            replace(one, pose=centred(one.pose)) if isinstance(one.geometry, Sphere) else one
-            for one in base.collisions
-        ),
-    )]
+    links = [
+        replace(
+            base,
+            inertial=replace(base.inertial, pose=centred(base.inertial.pose)),
+            collisions=tuple(
+                replace(one, pose=centred(one.pose)) if isinstance(one.geometry, Sphere) else one
+                for one in base.collisions
+            ),
+        )
+    ]
     for link, side in zip(wheels, (1.0, -1.0), strict=True):
         x, _, z = link.pose.position
-        links.append(replace(
-            link,
-            pose=Pose((x, 0.44 * side, z), from_rpy(-math.pi / 2, 0.0, 0.0)),
-            inertial=replace(link.inertial, pose=Pose()),
-            collisions=tuple(replace(one, pose=Pose()) for one in link.collisions),
-        ))
+        links.append(
+            replace(
+                link,
+                pose=Pose((x, 0.44 * side, z), from_rpy(-math.pi / 2, 0.0, 0.0)),
+                inertial=replace(link.inertial, pose=Pose()),
+                collisions=tuple(replace(one, pose=Pose()) for one in link.collisions),
+            )
+        )
     return replace(spec, links=tuple(links))
 
 
@@ -331,8 +335,9 @@ def rolling_ball(tuning: Tuning | None = None) -> float:
 def lying_can(tuning: Tuning | None = None) -> float:
     """Return how far a can lying oblique to the axes drifts in 10 s [m]."""
     with empty_world(tuning) as world:
-        can = urdf_spec(link('can', '<cylinder radius="0.033" length="0.12"/>', 0.39,
-                             (5.6e-4, 5.6e-4, 1.7e-4)))
+        can = urdf_spec(
+            link('can', '<cylinder radius="0.033" length="0.12"/>', 0.39, (5.6e-4, 5.6e-4, 1.7e-4))
+        )
         model = world.spawn(can, 'can', Pose((0.0, 0.0, 0.034), from_rpy(math.pi / 2.0, 0.0, 0.4)))
         world.run(SETTLED)
         start = model.pose.position

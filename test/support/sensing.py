@@ -14,9 +14,11 @@ RECORDED = ROOT / 'test' / 'data' / 'gazebo'
 ROBOTS = RECORDED / 'sensors' / 'robots'
 # Pose of the laser in all recorded robots, in the model's frame: position [m], yaw [rad].
 LASER, HEADING = (0.12, 0.03, 0.35), 0.1
-CUBE = ('<sdf version="1.6"><model name="cube"><static>1</static><link name="l">'
-        '<collision name="c"><geometry><box><size>.02 .02 .02</size></box></geometry>'
-        '</collision></link></model></sdf>')
+CUBE = (
+    '<sdf version="1.6"><model name="cube"><static>1</static><link name="l">'
+    '<collision name="c"><geometry><box><size>.02 .02 .02</size></box></geometry>'
+    '</collision></link></model></sdf>'
+)
 
 
 def recordings(name):
@@ -42,6 +44,11 @@ def recorded_scene(recording):
         x, y, z = LASER
         middle = recording['near'] + 0.01
         # The six digits that were given to spawn_model decide where a ray begins at its surface.
-        world.spawn(CUBE, x=round(x + middle * math.cos(HEADING), 6),
-                    y=round(y + middle * math.sin(HEADING), 6), z=z, yaw=HEADING)
+        world.spawn(
+            CUBE,
+            x=round(x + middle * math.cos(HEADING), 6),
+            y=round(y + middle * math.sin(HEADING), 6),
+            z=z,
+            yaw=HEADING,
+        )
     return world, robot

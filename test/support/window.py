@@ -36,8 +36,9 @@ class FakeSimulator:
         self.fault = ''
         self.where = Pose(), Twist()
         self.topics = ()
-        self.view = self.time = self.robots = self.inspection = self.hands = self.library = \
-            self.worlds = self
+        self.view = self.time = self.robots = self.inspection = self.hands = self.library = (
+            self.worlds
+        ) = self
         self.contacts, self.joints = FakeContacts(), FakeJoints()
         self.sensors, self.signals = FakeTopics(), FakeSignals()
         self.maps, self.goals = FakeMaps(), FakeGoals()
@@ -115,6 +116,7 @@ class FakeJoints:
             self.told.append((name, *arguments))
             if self.fault:
                 raise SimError(self.fault)
+
         return note
 
 
@@ -220,5 +222,10 @@ def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):
 
 def clock(time=0.0, real_time=0.0, paused=False, **poses):
     """Return a motion; _3=POSE is of the link of number 3."""
-    return ShownMotion(time, real_time, round(1000 * time), paused,
-                       {int(name[1:]): pose for name, pose in poses.items()})
+    return ShownMotion(
+        time,
+        real_time,
+        round(1000 * time),
+        paused,
+        {int(name[1:]): pose for name, pose in poses.items()},
+    )

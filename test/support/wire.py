@@ -47,7 +47,8 @@ class Topic:
     def __init__(self, message_class, options):
         self.options, self.sent, self.message_class = options, [], message_class
         self.impl = SimpleNamespace(
-            connections=[], subscriber_listeners=[], seq=0, message_data_sent=0)
+            connections=[], subscriber_listeners=[], seq=0, message_data_sent=0
+        )
 
     def read(self, name='/reader'):
         """Subscribe as a node."""

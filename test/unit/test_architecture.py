@@ -26,12 +26,10 @@ ARROWS = {
     'sim/formats/xml': 'sim/core sim/description sim/plugin_registry',
     'sim/formats/ogre': 'sim/core sim/description sim/resources',
     'sim/formats/kinematics': 'sim/core sim/description sim/formats/xml',
-    'sim/formats/urdf':
-        'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/xacro_module '
-        'sim/formats/xml sim/formats/kinematics sim/formats/ogre',
-    'sim/formats/sdf':
-        'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
-        'sim/formats/kinematics sim/formats/ogre',
+    'sim/formats/urdf': 'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/xacro_module '
+    'sim/formats/xml sim/formats/kinematics sim/formats/ogre',
+    'sim/formats/sdf': 'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
+    'sim/formats/kinematics sim/formats/ogre',
     'sim/physics': 'sim/core sim/description sim/meshes',
     'sim/physics/bullet': 'sim/core sim/description sim/meshes sim/physics',
     'sim/runtime': 'sim/core sim/description sim/physics sim/plugin_registry',
@@ -39,66 +37,49 @@ ARROWS = {
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
-    'sim/controllers':
-        'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
+    'sim/controllers': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/controllers/drive': 'sim/core sim/description sim/runtime sim/controllers',
-    'sim/rendering':
-        'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
+    'sim/rendering': 'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
     'sim/rendering/gl': '',
     'sim/placement': 'sim/core sim/description sim/meshes sim/runtime',
     'sim/mapping': 'sim/core sim/description sim/meshes sim/resources sim/runtime',
-    'sim/sensors':
-        'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
-        'sim/rendering',
-    'sim/public':
-        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
-        'sim/plugins sim/controllers sim/sensors',
+    'sim/sensors': 'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
+    'sim/rendering',
+    'sim/public': 'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
+    'sim/plugins sim/controllers sim/sensors',
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',
     'ros_api/messages': 'sim/core sim/description sim/runtime sim/sensors',
-    'ros_api/server':
-        'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
-    'ros_api/services':
-        'sim/core sim/description sim/resources sim/formats sim/physics sim/placement sim/runtime '
-        'ros_api/server ros_api/messages ros_api/transport',
-    'ros_api/topics':
-        'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
-    'ros_api/reconfigure':
-        'sim/plugins sim/controllers sim/sensors '
-        'ros_api/server ros_api/transport ros_api/services',
-    'ros_api/adapters':
-        'sim/core sim/formats sim/runtime sim/plugins sim/controllers sim/sensors '
-        'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
-    'ros_api/adapters/controllers':
-        'sim/controllers sim/core sim/formats sim/runtime ros_api/adapters ros_api/messages '
-        'ros_api/reconfigure ros_api/server ros_api/transport',
-    'ros_api/views':
-        'sim/core sim/description sim/runtime sim/rendering '
-        'ros_api/server ros_api/messages ros_api/transport',
-    'ros_api/clients':
-        'sim/core sim/description sim/public sim/resources sim/rendering sim/runtime '
-        'ros_api/messages ros_api/transport ros_api/views batch',
+    'ros_api/server': 'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
+    'ros_api/services': 'sim/core sim/description sim/resources sim/formats sim/physics sim/placement sim/runtime '
+    'ros_api/server ros_api/messages ros_api/transport',
+    'ros_api/topics': 'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
+    'ros_api/reconfigure': 'sim/plugins sim/controllers sim/sensors '
+    'ros_api/server ros_api/transport ros_api/services',
+    'ros_api/adapters': 'sim/core sim/formats sim/runtime sim/plugins sim/controllers sim/sensors '
+    'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
+    'ros_api/adapters/controllers': 'sim/controllers sim/core sim/formats sim/runtime ros_api/adapters ros_api/messages '
+    'ros_api/reconfigure ros_api/server ros_api/transport',
+    'ros_api/views': 'sim/core sim/description sim/runtime sim/rendering '
+    'ros_api/server ros_api/messages ros_api/transport',
+    'ros_api/clients': 'sim/core sim/description sim/public sim/resources sim/rendering sim/runtime '
+    'ros_api/messages ros_api/transport ros_api/views batch',
     'ros_api/controller_programs': 'ros_api/clients ros_api/transport',
-    'ros_api/window':
-        'sim/core sim/description sim/resources sim/formats '
-        'ros_api/messages ros_api/transport ros_api/clients',
-    'ros_api/node':
-        'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
-        'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
-        'ros_api/reconfigure ros_api/views',
+    'ros_api/window': 'sim/core sim/description sim/resources sim/formats '
+    'ros_api/messages ros_api/transport ros_api/clients',
+    'ros_api/node': 'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
+    'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
+    'ros_api/reconfigure ros_api/views',
     'batch': 'sim sim/core sim/plugins',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
-    'viewer':
-        'sim sim/controllers sim/core sim/description sim/formats sim/placement sim/plugins '
-        'sim/resources sim/runtime sim/sensors web',
-    'gym':
-        'sim sim/controllers sim/core sim/description sim/plugins sim/rendering sim/runtime '
-        'sim/sensors viewer',
+    'viewer': 'sim sim/controllers sim/core sim/description sim/formats sim/placement sim/plugins '
+    'sim/resources sim/runtime sim/sensors web',
+    'gym': 'sim sim/controllers sim/core sim/description sim/plugins sim/rendering sim/runtime '
+    'sim/sensors viewer',
     'gym/tasks': 'gym sim sim/description sim/rendering',
-    'cli':
-        'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '
-        'ros_api/window ros_api/node web viewer batch',
+    'cli': 'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '
+    'ros_api/window ros_api/node web viewer batch',
     '': '',
 }
 # Upwards, but only within a function, when it is called: World.show and World.recording.
@@ -108,8 +89,10 @@ LATE = {('sim/public', 'viewer')}
 @cache
 def modules():
     """Return the syntax tree of each module, by its path without suffix."""
-    return {path.relative_to(PACKAGE).with_suffix('').as_posix(): ast.parse(path.read_text())
-            for path in sorted(PACKAGE.rglob('*.py'))}
+    return {
+        path.relative_to(PACKAGE).with_suffix('').as_posix(): ast.parse(path.read_text())
+        for path in sorted(PACKAGE.rglob('*.py'))
+    }
 
 
 def folder_of(module):
@@ -121,7 +104,7 @@ def imports():
     for module, tree in modules().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.level:
-                above = module.split('/')[:-node.level]
+                above = module.split('/')[: -node.level]
                 source = '/'.join([*above, *(node.module or '').split('.')]).rstrip('/')
                 for alias in node.names:
                     inner = f'{source}/{alias.name}'.lstrip('/')
@@ -143,9 +126,13 @@ def arrows():
     An __init__.py may also import from its subfolders, to register or to re-export.
     """
     pairs = {(module, folder_of(module), room_of(imported)) for module, imported, _ in imports()}
-    return {(a, b) for module, a, b in pairs
-            if a != b and (a, b) not in LATE
-            and not (module.endswith('__init__') and b.startswith(f'{a}/'))}
+    return {
+        (a, b)
+        for module, a, b in pairs
+        if a != b
+        and (a, b) not in LATE
+        and not (module.endswith('__init__') and b.startswith(f'{a}/'))
+    }
 
 
 @cache
@@ -181,8 +168,11 @@ def test_folder_imports_only_from_those_in_the_table(folder):
 
 
 def test_late_imports_are_within_functions_or_for_types():
-    late = {(module, imported) for module, imported, _ in imports()
-            if (folder_of(module), room_of(imported)) in LATE}
+    late = {
+        (module, imported)
+        for module, imported, _ in imports()
+        if (folder_of(module), room_of(imported)) in LATE
+    }
     assert {(folder_of(a), room_of(b)) for a, b in late} == LATE
     for module, _ in late:
         at_once = [node for node in modules()[module].body if isinstance(node, ast.ImportFrom)]
@@ -214,8 +204,11 @@ def test_folders_use_each_others_public_names_only():
     private = []
     for module, imported, name in imports():
         own, room = folder_of(module), room_of(imported)
-        if own == room or own.startswith(f'{room}/') or (
-                module.endswith('__init__') and room.startswith(f'{own}/')):
+        if (
+            own == room
+            or own.startswith(f'{room}/')
+            or (module.endswith('__init__') and room.startswith(f'{own}/'))
+        ):
             continue  # a nested room may use the modules of the outer one
         wanted = name if imported == room else imported.rpartition('/')[2]
         if wanted is not None and wanted not in public_names(room):
@@ -227,8 +220,12 @@ def test_public_names_exist():
     for module, tree in modules().items():
         room = folder_of(module)
         if module.endswith('/__init__'):
-            bound = {alias.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)
-                     for alias in node.names}
+            bound = {
+                alias.name
+                for node in ast.walk(tree)
+                if isinstance(node, ast.ImportFrom)
+                for alias in node.names
+            }
             files = {name.rpartition('/')[2] for name in modules() if folder_of(name) == room}
             assert public_names(room) <= bound | files
 
@@ -279,24 +276,42 @@ def test_only_transport_touches_rospys_internals():
 
 
 def test_the_simulator_imports_no_messages():
-    found = {(module, name) for module, tree in modules().items() if module.startswith('sim/')
-             for name in imported_packages(tree) if MESSAGES.fullmatch(name)}
+    found = {
+        (module, name)
+        for module, tree in modules().items()
+        if module.startswith('sim/')
+        for name in imported_packages(tree)
+        if MESSAGES.fullmatch(name)
+    }
     assert not found
 
 
 def test_no_module_imports_this_library_by_a_name():
-    using = [name for name, tree in modules().items()
-             if imported_packages(tree) & {'rosbots_description', 'rosbots_simulator'}]
+    using = [
+        name
+        for name, tree in modules().items()
+        if imported_packages(tree) & {'rosbots_description', 'rosbots_simulator'}
+    ]
     assert using == []  # a user's package may have the same name, and the other is a symbolic link
 
 
 def test_the_simulator_needs_no_ros():
-    names = [f'rosbots_description.{name.removesuffix("/__init__").replace("/", ".")}'
-             for name in modules() if name.startswith('sim/')]
-    program = ("import importlib, sys; sys.modules['rospy'] = None\n"
-               'for name in sys.argv[1:]: importlib.import_module(name)\n'
-               "print(*(name for name in sys.modules if name.endswith(('_msgs', '_srvs'))))")
+    names = [
+        f'rosbots_description.{name.removesuffix("/__init__").replace("/", ".")}'
+        for name in modules()
+        if name.startswith('sim/')
+    ]
+    program = (
+        "import importlib, sys; sys.modules['rospy'] = None\n"
+        'for name in sys.argv[1:]: importlib.import_module(name)\n'
+        "print(*(name for name in sys.modules if name.endswith(('_msgs', '_srvs'))))"
+    )
     ended = subprocess.run(
-        [sys.executable, '-c', program, *names], capture_output=True, text=True, timeout=60,
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(SOURCE), *sys.path])}, check=False)
+        [sys.executable, '-c', program, *names],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(SOURCE), *sys.path])},
+        check=False,
+    )
     assert (ended.returncode, ended.stdout.strip(), ended.stderr) == (0, '', '')

@@ -40,6 +40,7 @@ def run(monkeypatch):
     """Return the module."""
     monkeypatch.syspath_prepend(str(BENCHMARK))
     import run
+
     return run
 
 
@@ -47,8 +48,12 @@ def runner(folder, *arguments):
     """Start the runner with `folder` as the folder of parts."""
     program = RUNNER.format(benchmark=str(BENCHMARK), folder=str(folder))
     return subprocess.Popen(
-        [sys.executable, '-c', program, *arguments], stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True, env=os.environ | {'PYTHONPATH': str(ROOT / 'src')})
+        [sys.executable, '-c', program, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {'PYTHONPATH': str(ROOT / 'src')},
+    )
 
 
 def is_running(pid):
@@ -93,12 +98,15 @@ def test_arguments_after_a_single_part_are_passed_to_it(tmp_path):
     assert printed.splitlines()[-1] == "['--seconds', '3']"
 
 
-@pytest.mark.parametrize(('arguments', 'parts', 'own'), [
-    ([], ['fidelity', 'physics'], []),
-    (['speed', 'veer'], ['speed', 'veer'], []),
-    (['fidelity', 'a.csv', 'b.csv'], ['fidelity'], ['a.csv', 'b.csv']),
-    (['soak', '--seconds', '20'], ['soak'], ['--seconds', '20']),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'parts', 'own'),
+    [
+        ([], ['fidelity', 'physics'], []),
+        (['speed', 'veer'], ['speed', 'veer'], []),
+        (['fidelity', 'a.csv', 'b.csv'], ['fidelity'], ['a.csv', 'b.csv']),
+        (['soak', '--seconds', '20'], ['soak'], ['--seconds', '20']),
+    ],
+)
 def test_parts_are_separated_from_arguments(run, arguments, parts, own):
     chosen, given = run.chosen(arguments)
     assert chosen[:2] == parts
@@ -122,8 +130,10 @@ def test_estimate_for_soak_follows_its_argument(run):
 
 def test_help_readme_and_contributing_list_every_part(run):
     usage = subprocess.run([ROOT / 'rosbots', 'help'], capture_output=True, text=True, check=True)
-    texts = [usage.stdout, *((ROOT / name).read_text(encoding='utf-8')
-                             for name in ('README.md', 'CONTRIBUTING.md'))]
+    texts = [
+        usage.stdout,
+        *((ROOT / name).read_text(encoding='utf-8') for name in ('README.md', 'CONTRIBUTING.md')),
+    ]
     for text in texts:
         lines = ' '.join(line for line in text.splitlines() if 'bench' in line)
         for part in (*run.PARTS, *run.LONG):

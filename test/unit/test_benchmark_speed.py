@@ -11,15 +11,18 @@ from support import ROOT
 def speed(monkeypatch):
     """Return the module, with stubs for the modules that start servers."""
     monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
-    for name, members in (('server', ('Server', 'run_in_new_process', 'STEPS_PER_SECOND')),
-                          ('reader', ('PER_SECOND', 'Reader', 'robot_topics')),
-                          ('loops', ('Loop',))):
+    for name, members in (
+        ('server', ('Server', 'run_in_new_process', 'STEPS_PER_SECOND')),
+        ('reader', ('PER_SECOND', 'Reader', 'robot_topics')),
+        ('loops', ('Loop',)),
+    ):
         module = ModuleType(name)
         vars(module).update(dict.fromkeys(members, 1000.0))
         monkeypatch.setitem(sys.modules, name, module)
     for name in ('speed', 'sweep'):
         monkeypatch.delitem(sys.modules, name, raising=False)
     import speed
+
     return speed
 
 
@@ -34,10 +37,14 @@ def measured(speed):
 
 
 def test_plot_labels_gazebos_curve_an_estimate_with_standing_robots(
-        speed, measured, monkeypatch, tmp_path):
+    speed, measured, monkeypatch, tmp_path
+):
     drawn = {}
-    monkeypatch.setattr(speed, 'plot_speed', lambda path, curves, estimated: drawn.update(
-        curves=curves, estimated=estimated))
+    monkeypatch.setattr(
+        speed,
+        'plot_speed',
+        lambda path, curves, estimated: drawn.update(curves=curves, estimated=estimated),
+    )
     speed.draw(measured, tmp_path / 'speed.png')
     label = drawn['estimated']
     assert label in drawn['curves']
@@ -57,18 +64,24 @@ def test_table_calls_gazebos_speeds_estimated(speed, measured):
 
 def test_the_slowest_command_of_each_kind_is_the_headline(speed):
     import sweep
-    points = [sweep.Swept(kind, robots, command, (one - 0.1, one, one + 5.0), 1e4, 0.5)
-              for kind in sweep.KINDS for robots in sweep.TARGETS
-              for command, one in zip(sweep.COMMANDS, range(9, 0, -1), strict=True)]
+
+    points = [
+        sweep.Swept(kind, robots, command, (one - 0.1, one, one + 5.0), 1e4, 0.5)
+        for kind in sweep.KINDS
+        for robots in sweep.TARGETS
+        for command, one in zip(sweep.COMMANDS, range(9, 0, -1), strict=True)
+    ]
     text = sweep.sweep_table(points)
-    assert ('slowest command, 20 skid steer of four: 1.00 times Gazebo at (0 m/s, 1 rad/s) '
-            '(NOT met: 4)') in text
+    assert (
+        'slowest command, 20 skid steer of four: 1.00 times Gazebo at (0 m/s, 1 rad/s) (NOT met: 4)'
+    ) in text
     assert text.count('slowest command') == 6
     assert 'Gazebo: estimated' in text
 
 
 def test_the_sweep_has_nine_commands_for_three_kinds(speed):
     import sweep
+
     assert len(set(sweep.COMMANDS)) == 9
     assert {speed for speed, turning in sweep.COMMANDS if not turning} == {0.05, 0.1, 0.3, 0.5, 1.0}
     assert len(sweep.KINDS) == 3

@@ -64,18 +64,27 @@ MESH_FILES = {
     'checkerboard_plane/meshes/checkerboard_plane.dae': ((-1.0, -1.0, 0.0), (1.0, 1.0, 0.0)),
     'cinder_block/meshes/cinder_block.dae': ((-0.217, -0.102, 0.0), (0.217, 0.102, 0.203)),
     'coke_can/meshes/coke_can.dae': ((-0.038, -0.039, 0.182), (0.029, 0.028, 0.306)),
-    'construction_barrel/meshes/construction_barrel.dae':
-        ((-0.51, -0.51, 0.0), (0.51, 0.51, 1.55)),
-    'construction_cone/meshes/construction_cone.dae':
-        ((-0.025, -0.025, 0.0), (0.025, 0.025, 0.109)),
-    'drc_practice_blue_cylinder/meshes/cylinder.dae':
-        ((-0.279, -0.279, 0.0), (0.279, 0.279, 0.863)),
-    'drc_practice_orange_jersey_barrier/meshes/jersey_barrier.dae':
-        ((-0.304, -0.931, 0.0), (0.304, 0.87, 1.05)),
-    'drc_practice_white_jersey_barrier/meshes/jersey_barrier.dae':
-        ((-0.304, -0.931, 0.0), (0.304, 0.87, 1.05)),
-    'drc_practice_yellow_parking_block/meshes/block.dae':
-        ((-0.08, -0.902, 0.0), (0.08, 0.902, 0.102)),
+    'construction_barrel/meshes/construction_barrel.dae': ((-0.51, -0.51, 0.0), (0.51, 0.51, 1.55)),
+    'construction_cone/meshes/construction_cone.dae': (
+        (-0.025, -0.025, 0.0),
+        (0.025, 0.025, 0.109),
+    ),
+    'drc_practice_blue_cylinder/meshes/cylinder.dae': (
+        (-0.279, -0.279, 0.0),
+        (0.279, 0.279, 0.863),
+    ),
+    'drc_practice_orange_jersey_barrier/meshes/jersey_barrier.dae': (
+        (-0.304, -0.931, 0.0),
+        (0.304, 0.87, 1.05),
+    ),
+    'drc_practice_white_jersey_barrier/meshes/jersey_barrier.dae': (
+        (-0.304, -0.931, 0.0),
+        (0.304, 0.87, 1.05),
+    ),
+    'drc_practice_yellow_parking_block/meshes/block.dae': (
+        (-0.08, -0.902, 0.0),
+        (0.08, 0.902, 0.102),
+    ),
     'dumpster/meshes/dumpster.dae': ((-0.835, -0.512, 0.0), (0.835, 0.512, 1.181)),
     'fire_hydrant/meshes/fire_hydrant.dae': ((-0.212, -0.212, 0.0), (0.212, 0.212, 0.929)),
     'first_2015_trash_can/meshes/trash_can.dae': ((-0.285, -0.319, 0.0), (0.28, 0.319, 0.737)),
@@ -95,24 +104,34 @@ PARTLY = {'table_marble': 0.3, 'person_standing': 0.1, 'person_walking': 0.1}
 
 
 def include(name):
-    text = f'<sdf version="1.7"><world name="w"><include><uri>model://{name}</uri></include>' \
+    text = (
+        f'<sdf version="1.7"><world name="w"><include><uri>model://{name}</uri></include>'
         '</world></sdf>'
+    )
     world = load_world(text, 'w.world', find_model=ModelSearch())
     return world.models[0]
 
 
 def bounds(spec, pose, kind):
-    corners = [extent(shape.geometry, compose(compose(pose, link.pose), shape.pose))
-               for link in spec.links for shape in getattr(link, kind)]
-    return (np.min([low for low, _ in corners], axis=0),
-            np.max([high for _, high in corners], axis=0))
+    corners = [
+        extent(shape.geometry, compose(compose(pose, link.pose), shape.pose))
+        for link in spec.links
+        for shape in getattr(link, kind)
+    ]
+    return (
+        np.min([low for low, _ in corners], axis=0),
+        np.max([high for _, high in corners], axis=0),
+    )
 
 
 def test_the_script_makes_these_files_and_no_others(tmp_path):
     subprocess.run([sys.executable, ROOT / 'tools' / 'make_models.py', tmp_path], check=True)
     made = {path.relative_to(tmp_path): path.read_bytes() for path in tmp_path.rglob('*.*')}
-    kept = {path.relative_to(MODELS): path.read_bytes() for path in MODELS.rglob('*.*')
-            if path.parent.name not in ('ground_plane', 'sun')}
+    kept = {
+        path.relative_to(MODELS): path.read_bytes()
+        for path in MODELS.rglob('*.*')
+        if path.parent.name not in ('ground_plane', 'sun')
+    }
     assert kept == made
     assert {path.parts[0] for path in made} == set(DOCUMENTED)
 
@@ -167,7 +186,8 @@ def test_every_mesh_file_is_documented():
 def test_a_saved_world_scales_a_mesh_file_as_the_model_does():
     spec, pose = saved('construction_cone/meshes/construction_cone.dae', '10 10 10')
     np.testing.assert_allclose(
-        bounds(spec, pose, 'collisions'), DOCUMENTED['construction_cone'][:2], atol=ANYWHERE)
+        bounds(spec, pose, 'collisions'), DOCUMENTED['construction_cone'][:2], atol=ANYWHERE
+    )
 
 
 def test_a_mesh_file_of_the_user_comes_before_the_built_in_one(tmp_path):

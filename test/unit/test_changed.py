@@ -18,12 +18,18 @@ def changed():
     sys.path.remove(str(ROOT / 'tools'))
 
 
-@pytest.mark.parametrize(('name', 'case'), [
-    ('web/gizmo.py', 'test/unit/web/test_page.py'),
-    ('sim/sensors/imu.py', 'test/engine/sim/sensors/test_imu.py'),  # a plugin, imported when used
-    ('sim/physics/bullet/contact_stiffness.py', 'test/engine/gym/test_parallel.py'),
-    ('ros_api/messages/fields.py', 'test/unit/ros_api/server/test_static_frames.py'),
-])
+@pytest.mark.parametrize(
+    ('name', 'case'),
+    [
+        ('web/gizmo.py', 'test/unit/web/test_page.py'),
+        (
+            'sim/sensors/imu.py',
+            'test/engine/sim/sensors/test_imu.py',
+        ),  # a plugin, imported when used
+        ('sim/physics/bullet/contact_stiffness.py', 'test/engine/gym/test_parallel.py'),
+        ('ros_api/messages/fields.py', 'test/unit/ros_api/server/test_static_frames.py'),
+    ],
+)
 def test_tests_that_import_the_changed_file_run_and_all_rostests(changed, name, case):
     choice = changed.choose([SOURCE + name])
     assert case in choice.cases
@@ -59,8 +65,10 @@ def test_a_lesson_runs_the_rostest_that_follows_it(changed):
     assert [path.name for path in choice.rostests] == ['lessons.test']
 
 
-@pytest.mark.parametrize('name', [
-    'package.xml', 'urdf/rosbots.xacro', 'test/data/hostile/cases.yaml', SOURCE + 'deleted.py'])
+@pytest.mark.parametrize(
+    'name',
+    ['package.xml', 'urdf/rosbots.xacro', 'test/data/hostile/cases.yaml', SOURCE + 'deleted.py'],
+)
 def test_everything_runs_when_unsure(changed, name):
     choice = changed.choose([name])
     assert (choice.cases, choice.rostests) == (None, None)

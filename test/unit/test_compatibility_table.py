@@ -69,13 +69,16 @@ def registered():
     world = World()
     with pytest.MonkeyPatch.context() as patch, closing(world):
         for name, kind in (
-            ('Service', 'services'), ('Publisher', 'topics'), ('Subscriber', 'topics')
+            ('Service', 'services'),
+            ('Publisher', 'topics'),
+            ('Subscriber', 'topics'),
         ):
             patch.setattr(rospy, name, endpoint(kind))
         for name in ('get_param', 'has_param', 'set_param'):
             patch.setattr(rospy, name, parameter)
-        patch.setattr(physics, 'write_parameters', lambda values: [
-            parameter(f'~{name}') for name in values])
+        patch.setattr(
+            physics, 'write_parameters', lambda values: [parameter(f'~{name}') for name in values]
+        )
         loop = Loop(world)
         registrar = SimpleNamespace(post=loop.post)
         server = Server(world, loop, registrar, find_package, find_model, None)
@@ -86,8 +89,17 @@ def registered():
 
 @pytest.mark.parametrize(
     'section',
-    ['Services', 'Topics', 'Parameters', 'Arguments of empty_world.launch', 'Plugins',
-     'Controllers', 'Launch files and programs', 'Commands of gz', 'Paths and packages'],
+    [
+        'Services',
+        'Topics',
+        'Parameters',
+        'Arguments of empty_world.launch',
+        'Plugins',
+        'Controllers',
+        'Launch files and programs',
+        'Commands of gz',
+        'Paths and packages',
+    ],
 )
 def test_each_name_has_one_row_with_a_known_state(section):
     counts = Counter(name for name, _, _ in rows(section))
@@ -133,5 +145,6 @@ def test_every_command_of_gz_has_a_row():
     rows = table('Commands of gz')
     commands = parser()._subparsers._group_actions[0].choices
     assert {f'gz {name}' for name in NOT_HERE} == {
-        name for name, state in rows.items() if state == MISSING}
+        name for name, state in rows.items() if state == MISSING
+    }
     assert {f'gz {name}' for name in commands} == offered('Commands of gz')

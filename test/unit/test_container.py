@@ -12,9 +12,16 @@ CONTAINER = (ROOT / 'Containerfile').read_text(encoding='utf-8')
 def instructions():
     """Return the instructions of the Containerfile, as the bare machine reads them."""
     done = subprocess.run(
-        ['bash', '-euc', f'source "{ROOT}/tools/bare_machine/container.bash"; '
-                         f'instructions "{ROOT}/Containerfile"'],
-        capture_output=True, text=True, check=True)
+        [
+            'bash',
+            '-euc',
+            f'source "{ROOT}/tools/bare_machine/container.bash"; '
+            f'instructions "{ROOT}/Containerfile"',
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     return [tuple(line.split(' ', 1)) for line in done.stdout.splitlines()]
 
 
@@ -40,8 +47,11 @@ def test_programs_in_it_do_not_run_as_root():
 
 def test_bare_machine_knows_every_instruction():
     script = (ROOT / 'tools' / 'bare_machine' / 'container.bash').read_text(encoding='utf-8')
-    known = {word for line in re.findall(r'^      ([A-Z |]+)\)', script, re.M)
-             for word in line.split(' | ')}
+    known = {
+        word
+        for line in re.findall(r'^      ([A-Z |]+)\)', script, re.M)
+        for word in line.split(' | ')
+    }
     assert {kind for kind, _ in instructions()} <= known
 
 

@@ -12,21 +12,48 @@ import pytest
 from support import ROOT
 
 DOCTOR = runpy.run_path(str(ROOT / 'tools' / 'doctor.py'))
-ROWS = ('platform', 'clone', 'versions', 'set demo', 'set base', 'set web', 'set gym', 'set batch',
-        'set navigation', 'set doc', 'set test', 'set bench', 'workspace', 'OpenGL', 'display',
-        'ports', 'terminal')
+ROWS = (
+    'platform',
+    'clone',
+    'versions',
+    'set demo',
+    'set base',
+    'set web',
+    'set gym',
+    'set batch',
+    'set navigation',
+    'set doc',
+    'set test',
+    'set bench',
+    'workspace',
+    'OpenGL',
+    'display',
+    'ports',
+    'terminal',
+)
 
 
 def doctor(clone, *arguments, **environment):
-    return subprocess.run([clone / 'rosbots', 'doctor', *arguments], capture_output=True, text=True,
-                          env={**os.environ, **environment}, timeout=120, check=False)
+    return subprocess.run(
+        [clone / 'rosbots', 'doctor', *arguments],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **environment},
+        timeout=120,
+        check=False,
+    )
 
 
 def in_doctor(script, **environment):
     """Return what a script prints that has the functions of the doctor."""
     program = f'source "$ROOT/tools/setup.bash"; source "$ROOT/tools/doctor.bash"; {script}'
-    return subprocess.run(['bash', '-euc', program], capture_output=True, text=True, check=True,
-                          env={'PATH': '/usr/bin:/bin', **environment}).stdout
+    return subprocess.run(
+        ['bash', '-euc', program],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={'PATH': '/usr/bin:/bin', **environment},
+    ).stdout
 
 
 @pytest.fixture
@@ -63,23 +90,34 @@ def test_clone_without_set_up_is_told_the_command_and_left_as_it_is(clone):
 def test_missing_debian_package_is_named():
     line = in_doctor(
         'choose_sets base; debian_packages() { echo no-such-package; }; missing_modules() { :; }; '
-        'state base', ROOT=str(ROOT), WORKSPACE='/nowhere')
-    assert line == ('missing: 1 Debian packages (no-such-package), 0 Python packages; '
-                    './rosbots setup base\n')
+        'state base',
+        ROOT=str(ROOT),
+        WORKSPACE='/nowhere',
+    )
+    assert line == (
+        'missing: 1 Debian packages (no-such-package), 0 Python packages; ./rosbots setup base\n'
+    )
 
 
 def test_stack_that_is_not_built_is_told_its_command():
-    script = ('choose_sets navigation; packages_done() {{ :; }}; python_done() {{ :; }}; '
-              'navigation_done() {{ {}; }}; state navigation')
-    said = [in_doctor(script.format(done), ROOT=str(ROOT), WORKSPACE='/nowhere')
-            for done in ('false', 'true')]
+    script = (
+        'choose_sets navigation; packages_done() {{ :; }}; python_done() {{ :; }}; '
+        'navigation_done() {{ {}; }}; state navigation'
+    )
+    said = [
+        in_doctor(script.format(done), ROOT=str(ROOT), WORKSPACE='/nowhere')
+        for done in ('false', 'true')
+    ]
     assert said == ['not built; ./rosbots navigation\n', 'ready\n']
 
 
 def test_report_names_no_user_no_machine_and_no_folder_of_theirs():
     text = 'CLONE of ada in /home/ada/rosbots on laptop.lan: ROS_IP=laptop.lan /data/x /home/eve/y'
-    shown = in_doctor(f'id() {{ echo ada; }}; uname() {{ echo laptop.lan; }}; anonymous "{text}"',
-                      ROOT=str(ROOT), HOME='/home/ada')
+    shown = in_doctor(
+        f'id() {{ echo ada; }}; uname() {{ echo laptop.lan; }}; anonymous "{text}"',
+        ROOT=str(ROOT),
+        HOME='/home/ada',
+    )
     assert shown == ('CLONE of NAME in ~/rosbots on NAME: ROS_IP=NAME /data/x /home/NAME/y\n')
 
 
@@ -97,10 +135,16 @@ def test_unknown_option_is_refused():
     assert result.stderr == 'rosbots: doctor takes --report or nothing\n'
 
 
-@pytest.mark.parametrize(('requirement', 'is_missing'), [
-    ('no_such_package==1.0', True), ('pybullet==0.1', True), ('pybullet==3.2.7', False),
-    ('no_such_package==1.0 ; platform_machine == "z80"', False), ('numpy', False),
-])
+@pytest.mark.parametrize(
+    ('requirement', 'is_missing'),
+    [
+        ('no_such_package==1.0', True),
+        ('pybullet==0.1', True),
+        ('pybullet==3.2.7', False),
+        ('no_such_package==1.0 ; platform_machine == "z80"', False),
+        ('numpy', False),
+    ],
+)
 def test_requirements_that_are_not_installed_are_found(requirement, is_missing):
     expected = [requirement.partition(' ;')[0]] if is_missing else []
     assert DOCTOR['missing']([requirement]) == expected

@@ -20,8 +20,11 @@ def anchors(document: Path) -> set[str]:
 
 @pytest.mark.parametrize('document', DOCUMENTS, ids=lambda path: path.name)
 def test_every_link_has_an_existing_target(document):
-    targets = [target for target in LINK.findall(document.read_text(encoding='utf-8'))
-               if '://' not in target]
+    targets = [
+        target
+        for target in LINK.findall(document.read_text(encoding='utf-8'))
+        if '://' not in target
+    ]
     for target in targets:
         name, _, anchor = target.partition('#')
         file = document.parent / name if name else document
@@ -31,8 +34,11 @@ def test_every_link_has_an_existing_target(document):
 
 @pytest.mark.parametrize('room', [sim, gym, batch], ids=lambda room: room.__name__)
 def test_the_api_reference_has_every_public_name(room):
-    (section,) = re.findall(rf'^## {re.escape(room.__name__)}\n(.*?)^```$',
-                            (ROOT / 'doc' / 'api.md').read_text(encoding='utf-8'), re.M | re.S)
+    (section,) = re.findall(
+        rf'^## {re.escape(room.__name__)}\n(.*?)^```$',
+        (ROOT / 'doc' / 'api.md').read_text(encoding='utf-8'),
+        re.M | re.S,
+    )
     named = set(re.findall(r'^\.\. auto\w+:: (\S+)', section, re.M))
     assert named == set(room.__all__) or named == {room.__name__}
 
@@ -47,19 +53,31 @@ def test_the_architecture_names_files_that_exist():
     package = ROOT / 'src' / 'rosbots_description'
     names = set(re.findall(r'`([\w./]+\.py)`', text)) - {'__init__.py'}
     assert len(names) > 20
-    assert not [name for name in sorted(names)
-                if not (ROOT / name).is_file() and not list(package.glob(f'**/{name}'))]
+    assert not [
+        name
+        for name in sorted(names)
+        if not (ROOT / name).is_file() and not list(package.glob(f'**/{name}'))
+    ]
 
 
 def test_the_architecture_names_rooms_that_exist():
     text = (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8')
     package = ROOT / 'src' / 'rosbots_description'
     (drawing,) = re.findall('```\n(.*?)```', text, re.S)
-    rooms = {name for line in drawing.splitlines() for name in re.findall(
-        r'([a-z_]+/(?:[a-z_]+/)*)', line.partition('  #')[0]) if not line.startswith('launch')}
+    rooms = {
+        name
+        for line in drawing.splitlines()
+        for name in re.findall(r'([a-z_]+/(?:[a-z_]+/)*)', line.partition('  #')[0])
+        if not line.startswith('launch')
+    }
     assert len(rooms) > 25
-    assert not [name for name in sorted(rooms) if not any(
-        path.is_dir() for path in [package / name, *package.glob(f'**/{name.rstrip("/")}')])]
+    assert not [
+        name
+        for name in sorted(rooms)
+        if not any(
+            path.is_dir() for path in [package / name, *package.glob(f'**/{name.rstrip("/")}')]
+        )
+    ]
 
 
 ROBOTS = ROOT / 'doc' / 'robots.md'

@@ -44,8 +44,13 @@ def test_a_script_can_be_run_and_read_in_one_sitting(script):
 
 @pytest.mark.parametrize('script', SCRIPTS.glob('*.py'), ids=lambda path: path.stem)
 def test_rosrun_finds_a_script_once(script):
-    found = subprocess.run(['rosrun', '--prefix', 'echo', 'rosbots_description', script.name],
-                           stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True)
+    found = subprocess.run(
+        ['rosrun', '--prefix', 'echo', 'rosbots_description', script.name],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert Path(found.stdout.strip()).samefile(script)
 
 
@@ -79,7 +84,7 @@ def picture(colour, columns, encoding='rgb8', padding=0):
     """Return an Image of 80 x 60 with grey ground and a stripe of a colour over all rows."""
     pixels = np.full((60, 80, 3), GREY, np.uint8)
     pixels[:, columns] = colour
-    rows = pixels[:, :, ::{'rgb8': 1, 'bgr8': -1}[encoding]].reshape(60, -1)
+    rows = pixels[:, :, :: {'rgb8': 1, 'bgr8': -1}[encoding]].reshape(60, -1)
     rows = np.pad(rows, ((0, 0), (0, padding)))
     return Image(height=60, width=80, step=240 + padding, encoding=encoding, data=rows.tobytes())
 
@@ -119,8 +124,19 @@ def test_a_lost_line_is_looked_for_on_its_side(last, sign):
 
 
 # Walls as segments (x, y, x, y) [m]: a room of 8 m by 6 m, and a box of 1 m in it.
-ROOM = np.array([(-4, -3, 4, -3), (4, -3, 4, 3), (4, 3, -4, 3), (-4, 3, -4, -3),
-                 (1, 0, 2, 0), (2, 0, 2, 1), (2, 1, 1, 1), (1, 1, 1, 0)], float)
+ROOM = np.array(
+    [
+        (-4, -3, 4, -3),
+        (4, -3, 4, 3),
+        (4, 3, -4, 3),
+        (-4, 3, -4, -3),
+        (1, 0, 2, 0),
+        (2, 0, 2, 1),
+        (2, 1, 1, 1),
+        (1, 1, 1, 0),
+    ],
+    float,
+)
 
 
 def scan(x, y, directions):
@@ -138,12 +154,14 @@ def scan(x, y, directions):
 def clearance(x, y):
     """Return the distance of a point from the walls of ROOM [m]."""
     start, along = ROOM[:, :2], ROOM[:, 2:] - ROOM[:, :2]
-    share = np.clip(((x, y) - start) @ along.T / np.sum(along ** 2, axis=1), 0, 1).diagonal()
+    share = np.clip(((x, y) - start) @ along.T / np.sum(along**2, axis=1), 0, 1).diagonal()
     return np.min(np.hypot(*(start + share[:, None] * along - (x, y)).T))
 
 
-@pytest.mark.parametrize(('x', 'y', 'way'), [
-    (2.0, 0.0, 1.5), (1.0, 0.3, 0.6), (0.3, 0.4, -0.0), (1.0, 0.51, np.inf), (-1.0, 0.0, np.inf)])
+@pytest.mark.parametrize(
+    ('x', 'y', 'way'),
+    [(2.0, 0.0, 1.5), (1.0, 0.3, 0.6), (0.3, 0.4, -0.0), (1.0, 0.51, np.inf), (-1.0, 0.0, np.inf)],
+)
 def test_a_disc_touches_a_point_after_its_free_way(x, y, way):
     assert wander.free_way(np.array([x]), np.array([y]), 0.5) == pytest.approx(way)
 
@@ -191,7 +209,11 @@ def test_the_map_of_a_room_has_its_walls_and_its_floor():
 def test_points_outside_the_map_do_not_count():
     grid = np.zeros((4, 4))
     assert map_while_driving.mask(grid, [-2.5, 0.5, 2.0, 1.9], [0.0, 0.5, 0.0, -2.0]).tolist() == [
-        [False, False, False, True], [False] * 4, [False, False, True, False], [False] * 4]
+        [False, False, False, True],
+        [False] * 4,
+        [False, False, True, False],
+        [False] * 4,
+    ]
 
 
 def test_a_cell_can_change_its_mind():
@@ -199,7 +221,8 @@ def test_a_cell_can_change_its_mind():
     for reach in (5.0, 20.0):
         for _ in range(30):
             grid = map_while_driving.add_scan(
-                grid, 0.5, 0.5, np.array([0.0]), np.array([reach]), 10.0)
+                grid, 0.5, 0.5, np.array([0.0]), np.array([reach]), 10.0
+            )
         assert (grid[10, 15] > 0) == (reach == 5.0)
 
 
@@ -209,13 +232,14 @@ def test_a_policy_sees_what_is_near_and_where_the_goal_is():
     seen = follow_policy.inputs(ranges, 4.0, 0.6, -0.8)
     assert seen[0] == 1.0
     assert seen[follow_policy.SECTORS // 2] == pytest.approx(math.exp(-1.0))
-    assert np.count_nonzero(seen[:follow_policy.SECTORS] > 0.01) == 2
-    assert seen[follow_policy.SECTORS:].tolist() == [1.0, 0.6, -0.8]
+    assert np.count_nonzero(seen[: follow_policy.SECTORS] > 0.01) == 2
+    assert seen[follow_policy.SECTORS :].tolist() == [1.0, 0.6, -0.8]
 
 
 def test_the_layers_of_a_policy_are_applied_in_turn():
-    values = follow_policy.outputs([[[1.0, 0.0, 0.5]], [[2.0, 0.0], [0.0, -1.0]]],
-                                   np.array([0.1, 9.0]))
+    values = follow_policy.outputs(
+        [[[1.0, 0.0, 0.5]], [[2.0, 0.0], [0.0, -1.0]]], np.array([0.1, 9.0])
+    )
     forward, turn = np.tanh([2.0 * math.tanh(0.6), -1.0])
     assert values == pytest.approx([(1.0 + forward) / 2.0, turn])  # never backwards
 
@@ -224,8 +248,12 @@ def test_the_learned_policy_has_an_input_for_each_value_and_turns_to_the_goal():
     path = SCRIPTS.parent / 'config' / 'go_to_goal_policy.json'
     layers = json.loads(path.read_text(encoding='utf-8'))['layers']
     free = np.full(361, 5.0)
-    turns = [follow_policy.outputs(layers, follow_policy.inputs(
-        free, 3.0, math.cos(bearing), math.sin(bearing)))[1] for bearing in (-1.0, 1.0)]
+    turns = [
+        follow_policy.outputs(
+            layers, follow_policy.inputs(free, 3.0, math.cos(bearing), math.sin(bearing))
+        )[1]
+        for bearing in (-1.0, 1.0)
+    ]
     assert turns[0] < 0.0 < turns[1]
 
 
@@ -234,11 +262,12 @@ def test_learning_finds_what_is_rewarded(monkeypatch, capsys):
     learn_by_cma = load('learn_by_cma')
     sizes = [rows * columns for rows, columns in learn_by_cma.SHAPES]
     wanted = np.linspace(-1.0, 1.0, sum(sizes))
-    monkeypatch.setattr(learn_by_cma, 'episode', lambda weights, _seed: (
-        -np.sum((weights - wanted) ** 2), False))
+    monkeypatch.setattr(
+        learn_by_cma, 'episode', lambda weights, _seed: (-np.sum((weights - wanted) ** 2), False)
+    )
     pool = SimpleNamespace(starmap=lambda call, given, chunksize: [*itertools.starmap(call, given)])
     weights, curve = learn_by_cma.learn(pool, 60, seed=1)
     assert len(curve) == 60
-    assert np.sum((weights - wanted) ** 2) < 0.3 * np.sum(wanted ** 2)
+    assert np.sum((weights - wanted) ** 2) < 0.3 * np.sum(wanted**2)
     assert [layer.shape for layer in learn_by_cma.layers_of(weights)] == [*learn_by_cma.SHAPES]
     assert capsys.readouterr().out.count('\n') == 60

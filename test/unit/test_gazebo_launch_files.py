@@ -31,7 +31,8 @@ _EMPTY = _COMMON | {
 # The launch files of gazebo_ros 2.9.2: each argument with its default.
 ARGUMENTS = {
     'empty_world': _EMPTY,
-    'elevator_world': _COMMON | {
+    'elevator_world': _COMMON
+    | {
         'recording': 'false',
         'headless': 'false',
         'verbose': 'true',
@@ -44,12 +45,22 @@ ARGUMENTS = {
     'willowgarage_world': {},
 }
 # Ours, of every launch file.
-WEB = {'web': 'false', 'web_host': '127.0.0.1', 'web_port': '8080', 'web_open': 'true',
-       'web_token': 'true', 'web_max_viewers': '16'}
+WEB = {
+    'web': 'false',
+    'web_host': '127.0.0.1',
+    'web_port': '8080',
+    'web_open': 'true',
+    'web_token': 'true',
+    'web_max_viewers': '16',
+}
 HANDED_ON = {name: f'$(arg {name})' for name in WEB}
 FIXED = {
-    'paused': 'false', 'use_sim_time': 'true', 'gui': 'true', 'headless': 'false',
-    'recording': 'false', 'debug': 'false',
+    'paused': 'false',
+    'use_sim_time': 'true',
+    'gui': 'true',
+    'headless': 'false',
+    'recording': 'false',
+    'debug': 'false',
 }
 
 
@@ -82,11 +93,15 @@ def test_range_world_passes_every_argument():
     world = given.pop('world_name')
     assert world == '$(find gazebo_plugins)/test/test_worlds/$(arg world).world'
     assert given == HANDED_ON | {
-        name: f'$(arg {name})' for name in ARGUMENTS['range_world'] if name != 'world'}
+        name: f'$(arg {name})' for name in ARGUMENTS['range_world'] if name != 'world'
+    }
 
 
 @pytest.mark.parametrize('name', ['empty_world', 'elevator_world'])
 def test_nodes_have_gazebos_names(name):
     nodes = [(node.get('name'), node.get('pkg')) for node in root(name).findall('node')]
     assert nodes == [
-        ('gazebo', 'gazebo_ros'), ('gazebo_gui', 'gazebo_ros'), ('gzweb', 'gazebo_ros')]
+        ('gazebo', 'gazebo_ros'),
+        ('gazebo_gui', 'gazebo_ros'),
+        ('gzweb', 'gazebo_ros'),
+    ]

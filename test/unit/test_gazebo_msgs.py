@@ -59,8 +59,10 @@ SERVICES = {
 def search_path() -> dict:
     """Map every message package in use to the folders of its .msg files."""
     share = Path('/usr/share')
-    path = {name: [str(share / name / 'msg')]
-            for name in ('geometry_msgs', 'std_msgs', 'trajectory_msgs')}
+    path = {
+        name: [str(share / name / 'msg')]
+        for name in ('geometry_msgs', 'std_msgs', 'trajectory_msgs')
+    }
     path['gazebo_msgs'] = [str(PACKAGE / 'msg')]
     return path
 

@@ -32,15 +32,20 @@ def built(tmp_path):
         folder.mkdir(parents=True)
         (folder / 'package.xml').write_text(
             f'<package><name>{package}</name><version>1.2.3</version><description>x</description>'
-            '<maintainer email="a@b.example">a</maintainer><license>BSD</license></package>')
+            '<maintainer email="a@b.example">a</maintainer><license>BSD</license></package>'
+        )
     return tmp_path / 'built'
 
 
 @pytest.fixture
 def load(monkeypatch, built):
     """Return a function (file name in launch/ or path, arguments) -> ROSLaunchConfig."""
-    places = [str(ROOT), str(ROOT / 'companions'), str(built),
-              os.environ.get('ROS_PACKAGE_PATH', '')]
+    places = [
+        str(ROOT),
+        str(ROOT / 'companions'),
+        str(built),
+        os.environ.get('ROS_PACKAGE_PATH', ''),
+    ]
     monkeypatch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(filter(None, places)))
     # `env python3` of the xacro script must be the interpreter that runs the tests
     interpreter = str(Path(sys.executable).parent)
@@ -50,8 +55,9 @@ def load(monkeypatch, built):
 
     def load_file(path, *arguments):
         config = ROSLaunchConfig()
-        XmlLoader(resolve_anon=False).load(str(ROOT / 'launch' / path), config, verbose=False,
-                                           argv=list(arguments))
+        XmlLoader(resolve_anon=False).load(
+            str(ROOT / 'launch' / path), config, verbose=False, argv=list(arguments)
+        )
         assert config.config_errors == []
         return config
 
@@ -84,8 +90,11 @@ def test_launch_file_loads(load, path):
 
 @pytest.mark.parametrize('path', FILES, ids=name)
 def test_every_argument_is_documented(path):
-    silent = [arg.get('name') for arg in ElementTree.parse(path).getroot().findall('arg')
-              if not (arg.get('doc') or '').strip()]
+    silent = [
+        arg.get('name')
+        for arg in ElementTree.parse(path).getroot().findall('arg')
+        if not (arg.get('doc') or '').strip()
+    ]
     assert silent == []
 
 
@@ -112,29 +121,37 @@ def test_rviz_shows_the_robot(load):
     assert nodes(load('rviz.launch')) == {
         'joint_state_publisher': 'joint_state_publisher/joint_state_publisher',
         'robot_state_publisher': 'robot_state_publisher/robot_state_publisher',
-        'rviz': 'rviz/rviz'}
+        'rviz': 'rviz/rviz',
+    }
 
 
 @pytest.mark.parametrize('path', FILES, ids=name)
 def test_rviz_is_started_only_where_there_is_a_display(path):
     for node in ElementTree.parse(path).iter('node'):
         if node.get('type') == 'rviz':
-            prefix, = shlex.split(node.get('launch-prefix'))
+            (prefix,) = shlex.split(node.get('launch-prefix'))
             assert prefix.endswith('/with_display'), prefix
 
 
 def test_without_a_display_a_sentence_takes_the_place_of_a_window():
     done = subprocess.run(
-        [ROOT / 'launch' / 'with_display', 'echo', 'started'], capture_output=True, text=True,
-        check=False, env={**os.environ, 'DISPLAY': ':987654'})
+        [ROOT / 'launch' / 'with_display', 'echo', 'started'],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, 'DISPLAY': ':987654'},
+    )
     assert (done.returncode, done.stdout) == (0, '')
     assert done.stderr == (
-        'echo: no window: there is no display to open it on (DISPLAY is :987654)\n')
+        'echo: no window: there is no display to open it on (DISPLAY is :987654)\n'
+    )
 
 
 def test_rviz_and_sliders_are_optional(load):
     assert set(nodes(load('rviz.launch', 'rviz:=false', 'gui:=true'))) == {
-        'joint_state_publisher_gui', 'robot_state_publisher'}
+        'joint_state_publisher_gui',
+        'robot_state_publisher',
+    }
 
 
 def test_rviz_config_shows_the_robot_in_base_link():
@@ -148,15 +165,19 @@ def test_spawn_calls_spawn_model_as_the_article_does(load):
     assert nodes(config) == {'mybot_spawn': 'gazebo_ros/spawn_model'}
     assert config.nodes[0].output == 'screen'
     assert arguments(config, 'mybot_spawn') == (
-        '-urdf -param robot_description -model rosbots -x 0 -y 0 -z 0.5 -R 0 -P 0 -Y 0')
+        '-urdf -param robot_description -model rosbots -x 0 -y 0 -z 0.5 -R 0 -P 0 -Y 0'
+    )
     assert '<robotBaseFrame>base_link<' in config.params['/robot_description'].value
 
 
 @pytest.mark.parametrize('file', ['load_description', 'rviz', 'spawn', 'simulation'])
 def test_robot_has_the_requested_sensors(load, file):
     switches = [f'{name}:=true' for name in ('depth', 'imu', 'laser', 'bumper', 'surfaces')]
-    text = load(f'{file}.launch', 'camera:=true', 'camera_pitch:=0.5', *switches
-                ).params['/robot_description'].value
+    text = (
+        load(f'{file}.launch', 'camera:=true', 'camera_pitch:=0.5', *switches)
+        .params['/robot_description']
+        .value
+    )
     assert re.findall('<sensor name=".*" type="(.*)"', text) == ['depth', 'imu', 'ray', 'contact']
     assert 'rpy="0 0.5 0"' in text
     assert '<kp>' in text
@@ -170,11 +191,21 @@ def test_each_argument_goes_to_the_one_of_its_name():
 
 
 def test_spawn_passes_every_argument_on(load):
-    config = load('spawn.launch', 'x:=-1.5', 'y:=2', 'z:=0.1', 'roll:=0.1', 'pitch:=-0.2',
-                  'yaw:=-3', 'model_name:=other', 'robot_namespace:=/r1')
+    config = load(
+        'spawn.launch',
+        'x:=-1.5',
+        'y:=2',
+        'z:=0.1',
+        'roll:=0.1',
+        'pitch:=-0.2',
+        'yaw:=-3',
+        'model_name:=other',
+        'robot_namespace:=/r1',
+    )
     assert arguments(config, 'mybot_spawn') == (
         '-urdf -param robot_description -model other -x -1.5 -y 2 -z 0.1 -R 0.1 -P -0.2 -Y -3'
-        ' -robot_namespace /r1')
+        ' -robot_namespace /r1'
+    )
 
 
 def test_simulation_has_one_tf_tree_and_rviz_is_optional(load):
@@ -191,28 +222,36 @@ def test_see_shows_the_data_of_all_sensors(load):
     assert arguments(config, 'gazebo').endswith(' "worlds/rooms.world"')
     description = config.params['/robot_description'].value
     assert re.findall('<sensor name=".*" type="(.*)"', description) == [
-        'depth', 'imu', 'ray', 'contact']
+        'depth',
+        'imu',
+        'ray',
+        'contact',
+    ]
     file = Path(arguments(config, 'rviz').split("'")[1])
     view = yaml.safe_load(file.read_text(encoding='utf-8'))['Visualization Manager']
-    topics = {display['Class']: display.get('Topic', display.get('Image Topic'))
-              for display in view['Displays']}
+    topics = {
+        display['Class']: display.get('Topic', display.get('Image Topic'))
+        for display in view['Displays']
+    }
     assert topics == dict.fromkeys(['rviz/Grid', 'rviz/RobotModel', 'rviz/TF']) | {
-        'rviz/LaserScan': 'scan', 'rviz/PointCloud2': 'camera1/depth/points',
-        'rviz/Image': 'camera1/image_raw'}
+        'rviz/LaserScan': 'scan',
+        'rviz/PointCloud2': 'camera1/depth/points',
+        'rviz/Image': 'camera1/image_raw',
+    }
 
 
-@pytest.mark.parametrize('file', [
-    'simulation', *(path for path in FILES if path.stem.endswith('_world'))], ids=str)
+@pytest.mark.parametrize(
+    'file', ['simulation', *(path for path in FILES if path.stem.endswith('_world'))], ids=str
+)
 def test_each_world_can_be_seen_in_a_browser(load, file):
     file = f'{file}.launch' if isinstance(file, str) else file
     assert 'gzweb' not in nodes(load(file))
     config = load(file, 'web:=true', 'web_host:=0.0.0.0', 'web_port:=8081')
+    assert arguments(config, 'gzweb') == ('--host 0.0.0.0 --port 8081 --max-viewers 16 --open')
+    config = load(file, 'web:=true', 'web_open:=false', 'web_token:=false', 'web_max_viewers:=30')
     assert arguments(config, 'gzweb') == (
-        '--host 0.0.0.0 --port 8081 --max-viewers 16 --open')
-    config = load(file, 'web:=true', 'web_open:=false', 'web_token:=false',
-                  'web_max_viewers:=30')
-    assert arguments(config, 'gzweb') == (
-        '--host 127.0.0.1 --port 8080 --max-viewers 30 --no-token')
+        '--host 127.0.0.1 --port 8080 --max-viewers 30 --no-token'
+    )
 
 
 def test_each_student_has_a_page_at_a_port_of_their_own(load):
@@ -223,8 +262,9 @@ def test_each_student_has_a_page_at_a_port_of_their_own(load):
 
 
 def test_simulation_passes_its_arguments_to_the_simulator(load):
-    config = load('simulation.launch', 'paused:=true', 'world_name:=my.world',
-                  'use_sim_time:=false')
+    config = load(
+        'simulation.launch', 'paused:=true', 'world_name:=my.world', 'use_sim_time:=false'
+    )
     assert arguments(config, 'gazebo').startswith('-u ')
     assert arguments(config, 'gazebo').endswith(' "my.world"')
     assert config.params['/use_sim_time'].value is False
@@ -232,19 +272,32 @@ def test_simulation_passes_its_arguments_to_the_simulator(load):
 
 GMAPPING = {'slam_gmapping': 'gmapping/slam_gmapping'}
 MOVE_BASE = {'move_base': 'move_base/move_base'}
-SIMULATION = {'gazebo': 'gazebo_ros/gzserver', 'mybot_spawn': 'gazebo_ros/spawn_model',
-              'robot_state_publisher': 'robot_state_publisher/robot_state_publisher'}
+SIMULATION = {
+    'gazebo': 'gazebo_ros/gzserver',
+    'mybot_spawn': 'gazebo_ros/spawn_model',
+    'robot_state_publisher': 'robot_state_publisher/robot_state_publisher',
+}
 
 
-@pytest.mark.parametrize(('file', 'arguments', 'started'), [
-    ('mapping', ['rviz:=false'], SIMULATION | GMAPPING),
-    ('mapping', ['simulation:=false', 'wander:=true'],
-     GMAPPING | {'wander': 'rosbots_description/wander.py', 'rviz': 'rviz/rviz'}),
-    ('save_map', [], {'map_saver': 'map_server/map_saver'}),
-    ('navigation', ['simulation:=false'],
-     MOVE_BASE | {'map_server': 'map_server/map_server', 'amcl': 'amcl/amcl', 'rviz': 'rviz/rviz'}),
-    ('slam_navigation', ['rviz:=false'], SIMULATION | GMAPPING | MOVE_BASE),
-])
+@pytest.mark.parametrize(
+    ('file', 'arguments', 'started'),
+    [
+        ('mapping', ['rviz:=false'], SIMULATION | GMAPPING),
+        (
+            'mapping',
+            ['simulation:=false', 'wander:=true'],
+            GMAPPING | {'wander': 'rosbots_description/wander.py', 'rviz': 'rviz/rviz'},
+        ),
+        ('save_map', [], {'map_saver': 'map_server/map_saver'}),
+        (
+            'navigation',
+            ['simulation:=false'],
+            MOVE_BASE
+            | {'map_server': 'map_server/map_server', 'amcl': 'amcl/amcl', 'rviz': 'rviz/rviz'},
+        ),
+        ('slam_navigation', ['rviz:=false'], SIMULATION | GMAPPING | MOVE_BASE),
+    ],
+)
 def test_navigation_starts_what_it_says(load, file, arguments, started):
     config = load(NAVIGATION / f'{file}.launch', *arguments)
     assert nodes(config) == started
@@ -255,7 +308,8 @@ def test_navigation_starts_what_it_says(load, file, arguments, started):
 def test_versions_of_what_is_built_are_a_parameter(load):
     config = load(NAVIGATION / 'navigation.launch')
     assert config.params['/rosbots_navigation/navigation'].value.strip() == (
-        'map_server 1.2.3, amcl 1.2.3, move_base 1.2.3, dwa_local_planner 1.2.3')
+        'map_server 1.2.3, amcl 1.2.3, move_base 1.2.3, dwa_local_planner 1.2.3'
+    )
 
 
 def test_map_and_initial_pose_of_navigation_are_arguments(load):
@@ -264,7 +318,8 @@ def test_map_and_initial_pose_of_navigation_are_arguments(load):
     assert config.params['/amcl/initial_pose_a'].value == 1.5
     default = load(NAVIGATION / 'navigation.launch')
     assert Path(arguments(default, 'map_server').strip("'")).resolve() == (
-        NAVIGATION.parent / 'maps' / 'rooms.yaml')
+        NAVIGATION.parent / 'maps' / 'rooms.yaml'
+    )
 
 
 def test_map_is_saved_where_the_terminal_is(load, monkeypatch):
@@ -288,10 +343,15 @@ EXAMPLES = ['follow_policy', 'go_to_goal', 'line_follower', 'map_while_driving',
 def test_an_example_node_gets_the_parameters_that_it_reads(load, name):
     script = (ROOT / 'scripts' / f'{name}.py').read_text(encoding='utf-8')
     config = load(f'{name}.launch', 'simulation:=false')
-    given = {param.removeprefix(f'/{name}/'): value.value
-             for param, value in config.params.items() if param.startswith(f'/{name}/')}
-    defaults = {param: yaml.safe_load(default) for param, default in re.findall(
-        r"get_param\('~(\w+)', ([^)]*)\)", script)}
+    given = {
+        param.removeprefix(f'/{name}/'): value.value
+        for param, value in config.params.items()
+        if param.startswith(f'/{name}/')
+    }
+    defaults = {
+        param: yaml.safe_load(default)
+        for param, default in re.findall(r"get_param\('~(\w+)', ([^)]*)\)", script)
+    }
     required = set(re.findall(r"get_param\('~(\w+)'\)", script))
     assert given == defaults | {param: given[param] for param in required}
     documented = script.split('Parameters:')[1].split('"""')[0]
@@ -307,14 +367,19 @@ def test_an_example_runs_beside_a_simulator_and_drives_the_robot(load, name):
 
 
 @pytest.mark.parametrize('file', ['empty_world', 'elevator_world'])
-@pytest.mark.parametrize(('world', 'words'), [
-    ("/home/me/Mein Roboter ä/o'clock #1.world", ["/home/me/Mein Roboter ä/o'clock #1.world"]),
-    ('', []),
-])
+@pytest.mark.parametrize(
+    ('world', 'words'),
+    [
+        ("/home/me/Mein Roboter ä/o'clock #1.world", ["/home/me/Mein Roboter ä/o'clock #1.world"]),
+        ('', []),
+    ],
+)
 def test_a_world_with_blanks_in_its_path_is_one_argument(load, tmp_path, file, world, words):
     path = tmp_path / 'including.launch'
     path.write_text(
         f'<launch><include file="$(find gazebo_ros)/launch/{file}.launch">'
-        f'<arg name="world_name" value="{world}"/></include></launch>', encoding='utf-8')
+        f'<arg name="world_name" value="{world}"/></include></launch>',
+        encoding='utf-8',
+    )
     server = next(node for node in load(path).nodes if node.name == 'gazebo')
     assert [word for word in shlex.split(server.args) if '.world' in word or not word] == words

@@ -9,17 +9,23 @@ from support import ROOT
 from support.lessons import LESSONS, Commands, File, LessonError, Shown, missing, read_lesson
 
 STEPS = [(lesson, step) for lesson in LESSONS for step in read_lesson(lesson)]
-PROGRAMS = [(lesson, step) for lesson, step in STEPS
-            if isinstance(step, File) and step.language == 'python']
+PROGRAMS = [
+    (lesson, step) for lesson, step in STEPS if isinstance(step, File) and step.language == 'python'
+]
 IN_LESSONS = 'ANN,D10,D2,T201,INP,EXE'  # rules that would not help a beginner
 MOST = 30_000  # bytes of a picture
 OURS = re.compile(r'`((?:rosrun|roslaunch|gz|\./rosbots) [^`]*)`')
 TESTED_ELSEWHERE = {
-    './rosbots doctor', './rosbots doctor --report', './rosbots setup batch',
-    './rosbots setup gym', './rosbots shell', 'gz world -p 0',
+    './rosbots doctor',
+    './rosbots doctor --report',
+    './rosbots setup batch',
+    './rosbots setup gym',
+    './rosbots shell',
+    'gz world -p 0',
     'roslaunch rosbots_description follow_policy.launch goal_x:=2 goal_y:=1',
     'rosrun rosbots_description learn_by_cma.py policy.json',
-    'rosrun rosbots_description wander.py'}
+    'rosrun rosbots_description wander.py',
+}
 
 
 def lesson(tmp_path, text):
@@ -34,7 +40,9 @@ def named(case):
 
 
 def test_steps_are_read_in_order_with_what_they_print(tmp_path):
-    page = lesson(tmp_path, """# A lesson
+    page = lesson(
+        tmp_path,
+        """# A lesson
 Save this as `a/robot.urdf`:
 ```xml
 <robot>
@@ -71,7 +79,8 @@ This appears in the first terminal:
 ```text
 what
 ```
-""")
+""",
+    )
     assert read_lesson(page) == [
         File('a/robot.urdf', '<robot>\n</robot>\n', 'xml', 3, is_addition=False),
         File('a/robot.urdf', '  <link/>\n', 'xml', 9, is_addition=True),
@@ -82,15 +91,35 @@ what
     ]
 
 
-@pytest.mark.parametrize('text', [
-    '```bash\nls\n', '```json\n{}\n```\n', 'Look at this:\n```xml\n<a/>\n```\n',
-    '```text\nshown\n```\n', '```\nls\n```\n', 'Type:\n\n    rostopic list\n',
-    '- A point\n  ```bash\n  ls\n  ```\n', '```bash\nls\n```\nIt shows\n```text\na\n```\n',
-    '```bash\nls\n```\n```text\n\n```\n', 'In a terminal of its own:\n```bash\none\ntwo\n```\n',
-    'Start it (or not):\n```bash\nroslaunch it\n```\n'],
-    ids=['open', 'json', 'a file without a name', 'output of nothing', 'no language', 'indented',
-         'in a list', 'output after a sentence', 'no output', 'two lines in a terminal',
-         'without a terminal'])
+@pytest.mark.parametrize(
+    'text',
+    [
+        '```bash\nls\n',
+        '```json\n{}\n```\n',
+        'Look at this:\n```xml\n<a/>\n```\n',
+        '```text\nshown\n```\n',
+        '```\nls\n```\n',
+        'Type:\n\n    rostopic list\n',
+        '- A point\n  ```bash\n  ls\n  ```\n',
+        '```bash\nls\n```\nIt shows\n```text\na\n```\n',
+        '```bash\nls\n```\n```text\n\n```\n',
+        'In a terminal of its own:\n```bash\none\ntwo\n```\n',
+        'Start it (or not):\n```bash\nroslaunch it\n```\n',
+    ],
+    ids=[
+        'open',
+        'json',
+        'a file without a name',
+        'output of nothing',
+        'no language',
+        'indented',
+        'in a list',
+        'output after a sentence',
+        'no output',
+        'two lines in a terminal',
+        'without a terminal',
+    ],
+)
 def test_a_block_that_no_test_runs_is_refused(tmp_path, text):
     with pytest.raises(LessonError, match=r'^lesson\.md, line \d+: '):
         read_lesson(lesson(tmp_path, text))
@@ -102,10 +131,17 @@ def test_lines_are_added_above_the_last_one(tmp_path):
     assert (tmp_path / 'x').read_text() == '<a>\n<b/>\n</a>\n'
 
 
-@pytest.mark.parametrize(('expected', 'output', 'is_there'), [
-    ('done', 'so\ndone\n', True), ('done', 'not done\n', False),
-    ('[INFO] […]: done', '\x1b[1m[INFO] [1.5, 0.1]: done\x1b[0m\r\n', True),
-    ('…done', 'not done\n', True), ('x: 0.…', 'x: 0.31\n', True), ('x: 0.…', 'x: 10.3\n', False)])
+@pytest.mark.parametrize(
+    ('expected', 'output', 'is_there'),
+    [
+        ('done', 'so\ndone\n', True),
+        ('done', 'not done\n', False),
+        ('[INFO] […]: done', '\x1b[1m[INFO] [1.5, 0.1]: done\x1b[0m\r\n', True),
+        ('…done', 'not done\n', True),
+        ('x: 0.…', 'x: 0.31\n', True),
+        ('x: 0.…', 'x: 10.3\n', False),
+    ],
+)
 def test_a_line_is_looked_for_in_the_whole_output(expected, output, is_there):
     assert missing((expected,), output) == ([] if is_there else [expected])
 
@@ -129,13 +165,21 @@ def test_commands_within_sentences_are_tested_elsewhere(page):
 def test_programs_are_lint_clean(_page, step):
     checked = subprocess.run(
         ['ruff', 'check', '--ignore', IN_LESSONS, '--stdin-filename', step.name, '-'],
-        input=step.text, cwd=ROOT, capture_output=True, text=True, check=False)
+        input=step.text,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
 def test_pictures_are_shown_and_small():
     folder = ROOT / 'doc' / 'images' / 'lessons'
-    shown = {name for page in LESSONS for name in re.findall(
-        r'images/lessons/([\w-]+\.webp)', page.read_text(encoding='utf-8'))}
+    shown = {
+        name
+        for page in LESSONS
+        for name in re.findall(r'images/lessons/([\w-]+\.webp)', page.read_text(encoding='utf-8'))
+    }
     assert shown == {path.name for path in folder.iterdir()}
     assert max(path.stat().st_size for path in folder.iterdir()) < MOST

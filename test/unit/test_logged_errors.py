@@ -21,30 +21,42 @@ def module():
     sys.path.remove(str(ROOT / 'tools'))
 
 
-@pytest.mark.parametrize(('text', 'found'), [
-    (f'[rosout][INFO] {TIME}: ready\n[rosout][ERROR] {TIME}: gone\n', ['gone']),
-    ('[ERROR] [1795500162.086625, 0.015000]: gone\n', ['gone']),
-    ('\x1b[31m[FATAL] [1795500162.08]: gone\x1b[0m\n', ['gone']),
-    (f'[rosbots_simulator.sim.x][ERROR] {TIME}: gone\n', ['gone']),
-    ('[ WARN] [1795500162.08]: odd\nErrors: 0\n', []),
-    (f'[rosout][ERROR] {TIME}: bad callback\n{FAULT}',
-     ['bad callback', 'traceback: ValueError: no minimum']),
-    (f'[rosout][INFO] {TIME}: ready\n{FAULT}', ['traceback: ValueError: no minimum']),
-    (FAULT, ['traceback: ValueError: no minimum']),
-    ('Traceback (most recent call last):\n  File', ['traceback: without an end']),
-    (f'[rospy.internal][ERROR] {TIME}: {FAULT}[rosout][ERROR] {TIME}: gone\n', ['gone']),
-    (f'[rosmaster.threadpool][ERROR] {TIME}: {FAULT}', []), ('', []),
-])
+@pytest.mark.parametrize(
+    ('text', 'found'),
+    [
+        (f'[rosout][INFO] {TIME}: ready\n[rosout][ERROR] {TIME}: gone\n', ['gone']),
+        ('[ERROR] [1795500162.086625, 0.015000]: gone\n', ['gone']),
+        ('\x1b[31m[FATAL] [1795500162.08]: gone\x1b[0m\n', ['gone']),
+        (f'[rosbots_simulator.sim.x][ERROR] {TIME}: gone\n', ['gone']),
+        ('[ WARN] [1795500162.08]: odd\nErrors: 0\n', []),
+        (
+            f'[rosout][ERROR] {TIME}: bad callback\n{FAULT}',
+            ['bad callback', 'traceback: ValueError: no minimum'],
+        ),
+        (f'[rosout][INFO] {TIME}: ready\n{FAULT}', ['traceback: ValueError: no minimum']),
+        (FAULT, ['traceback: ValueError: no minimum']),
+        ('Traceback (most recent call last):\n  File', ['traceback: without an end']),
+        (f'[rospy.internal][ERROR] {TIME}: {FAULT}[rosout][ERROR] {TIME}: gone\n', ['gone']),
+        (f'[rosmaster.threadpool][ERROR] {TIME}: {FAULT}', []),
+        ('', []),
+    ],
+)
 def test_errors_and_tracebacks_are_found_but_not_those_of_connections(module, text, found):
     assert list(module.errors(text.splitlines(keepends=True))) == found
 
 
-@pytest.mark.parametrize(('expected', 'said'), [
-    ({}, ['not expected, in it.log: model [x] does not exist']),
-    ({r'^model \[x\]': 'it is absent'}, []),
-    ({r'^model \[x\]': 'it is absent', 'never': 'it fails'}, ['expected, but not logged: never']),
-    ({r'^model \[x\]': 'it is absent', 'never': 'perhaps, if late'}, []),
-])
+@pytest.mark.parametrize(
+    ('expected', 'said'),
+    [
+        ({}, ['not expected, in it.log: model [x] does not exist']),
+        ({r'^model \[x\]': 'it is absent'}, []),
+        (
+            {r'^model \[x\]': 'it is absent', 'never': 'it fails'},
+            ['expected, but not logged: never'],
+        ),
+        ({r'^model \[x\]': 'it is absent', 'never': 'perhaps, if late'}, []),
+    ],
+)
 def test_what_is_not_expected_or_not_logged_is_told_once(module, tmp_path, expected, said):
     log = tmp_path / 'it.log'
     log.write_text(2 * f'[rosout][ERROR] {TIME}: model [x] does not exist\n')

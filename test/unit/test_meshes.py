@@ -42,8 +42,10 @@ def corners(name: str) -> tuple:
     root = document(name)
     lists = [np.array(p.text.split(), int) for p in root.findall('.//c:triangles/c:p', COLLADA)]
     indices = np.concatenate(lists).reshape(-1, 3, 2)
-    return (floats(root, f'{name}-points')[indices[..., 0]],
-            floats(root, f'{name}-normals')[indices[..., 1]])
+    return (
+        floats(root, f'{name}-points')[indices[..., 0]],
+        floats(root, f'{name}-normals')[indices[..., 1]],
+    )
 
 
 @pytest.fixture(scope='module')
@@ -100,13 +102,15 @@ def test_triangles_have_area_and_matching_normals(name):
 def test_every_part_is_closed_and_faces_outwards(name, monkeypatch):
     monkeypatch.syspath_prepend(str(SCRIPT.parent))
     from make_meshes import MESHES
+
     for number, (colour, surface) in enumerate(MESHES[name][0]()):
         _, vertices = np.unique(surface.reshape(-1, 3).round(9), axis=0, return_inverse=True)
         a, b, c = vertices.reshape(-1, 3).T.tolist()
         edges = Counter(zip(a + b + c, b + c + a, strict=True))
         volume = np.einsum('ij,ij', surface[:, 0], np.cross(surface[:, 1], surface[:, 2])) / 6.0
         assert all(edges[end, start] == edges[start, end] for start, end in list(edges)), (
-            f'{name} part {number} ({colour.name}) has a gap')
+            f'{name} part {number} ({colour.name}) has a gap'
+        )
         assert volume > 0.0, f'{name} part {number} ({colour.name}) is inside out'
 
 

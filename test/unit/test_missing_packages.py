@@ -10,13 +10,19 @@ MANIFEST = """<package format="2"><name>rover</name><version>1.0.0</version><des
 <depend>gazebo_ros</depend>{}</package>"""
 
 
-@pytest.mark.parametrize(('needed', 'said'), [
-    ('rospy', None), ('rover', None),
-    ('interactive_markers',
-     "rover needs 'interactive_markers', which is not among the ROS packages here: install "
-     'python3-interactive-markers (requirements/optional.apt)'),
-    ('twist_mux', "rover needs 'twist_mux', which is not among the ROS packages here: if it"),
-])
+@pytest.mark.parametrize(
+    ('needed', 'said'),
+    [
+        ('rospy', None),
+        ('rover', None),
+        (
+            'interactive_markers',
+            "rover needs 'interactive_markers', which is not among the ROS packages here: install "
+            'python3-interactive-markers (requirements/optional.apt)',
+        ),
+        ('twist_mux', "rover needs 'twist_mux', which is not among the ROS packages here: if it"),
+    ],
+)
 def test_what_is_missing_is_named_with_the_cure(tmp_path, monkeypatch, needed, said):
     monkeypatch.syspath_prepend(str(CHECK))
     import check
@@ -24,13 +30,15 @@ def test_what_is_missing_is_named_with_the_cure(tmp_path, monkeypatch, needed, s
     folder = tmp_path / 'rover'
     folder.mkdir()
     (folder / 'package.xml').write_text(
-        MANIFEST.format(f'<exec_depend>{needed}</exec_depend>'), encoding='utf-8')
+        MANIFEST.format(f'<exec_depend>{needed}</exec_depend>'), encoding='utf-8'
+    )
     monkeypatch.setattr(check.rospkg.RosPack, 'list', lambda _: ['gazebo_ros', 'rospy'])
     sentences = check.missing_packages([folder])
-    assert [sentence[:len(said)] for sentence in sentences] == [said] if said else not sentences
+    assert [sentence[: len(said)] for sentence in sentences] == [said] if said else not sentences
 
 
 def test_topic_tools_of_debian_is_two_packages(monkeypatch):
     monkeypatch.syspath_prepend(str(CHECK))
     import check
+
     assert check.optional_packages('topic_tools') == ['libtopic-tools-dev', 'topic-tools']

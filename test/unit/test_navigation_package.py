@@ -31,8 +31,10 @@ def parameters(name):
 MOVE_BASE, COSTMAP = parameters('move_base'), parameters('costmap')
 PLANNER = MOVE_BASE['DWAPlannerROS']
 ROBOT = ElementTree.fromstring(robot_urdf(one_tf_tree='true', laser='true'))  # of navigation.launch
-DRIVE = {each.tag: each.text.strip()
-         for each in ROBOT.find('.//plugin[@filename="libgazebo_ros_diff_drive.so"]')}
+DRIVE = {
+    each.tag: each.text.strip()
+    for each in ROBOT.find('.//plugin[@filename="libgazebo_ros_diff_drive.so"]')
+}
 RANGE = float(ROBOT.findtext('.//sensor[@type="ray"]//range/max'))  # [m] of the scanner
 
 
@@ -45,23 +47,37 @@ def points(geometry, pose):
             return np.array([pose.position]) + radius * np.vstack((np.eye(3), -np.eye(3)))
         case Cylinder(radius, length):
             angles = np.radians(np.arange(360.0))
-            local = np.concatenate([np.column_stack((
-                radius * np.cos(angles), radius * np.sin(angles), np.full(360, end * length / 2)))
-                for end in (-1, 1)])
+            local = np.concatenate(
+                [
+                    np.column_stack(
+                        (
+                            radius * np.cos(angles),
+                            radius * np.sin(angles),
+                            np.full(360, end * length / 2),
+                        )
+                    )
+                    for end in (-1, 1)
+                ]
+            )
     return local @ rotation_matrix(pose.orientation).T + pose.position
 
 
 def test_footprint_is_the_rectangle_around_the_robot_to_the_next_centimetre():
-    shapes = np.concatenate([
-        points(collision.geometry, compose(link.pose, collision.pose))
-        for link in robot_spec().links for collision in link.collisions])
+    shapes = np.concatenate(
+        [
+            points(collision.geometry, compose(link.pose, collision.pose))
+            for link in robot_spec().links
+            for collision in link.collisions
+        ]
+    )
     low, high = shapes.min(axis=0)[:2], shapes.max(axis=0)[:2]
     corners = np.array(COSTMAP['footprint'])
     near = 1e-6  # [m], of numbers that are whole centimetres themselves
     assert corners.min(axis=0) == pytest.approx(np.floor((low + near) / CENTIMETRE) * CENTIMETRE)
     assert corners.max(axis=0) == pytest.approx(np.ceil((high - near) / CENTIMETRE) * CENTIMETRE)
     assert {tuple(corner) for corner in corners} == {
-        (x, y) for x in corners[:, 0] for y in corners[:, 1]}
+        (x, y) for x in corners[:, 0] for y in corners[:, 1]
+    }
 
 
 def test_robot_gains_speed_as_its_wheels_do():
@@ -94,9 +110,13 @@ def test_inflation_reaches_beyond_the_footprint():
 def test_frames_and_topics_are_those_of_the_drive_and_the_scanner():
     gmapping, amcl = parameters('gmapping'), parameters('amcl')
     assert {COSTMAP['robot_base_frame'], gmapping['base_frame'], amcl['base_frame_id']} == {
-        DRIVE['robotBaseFrame']}
-    assert {MOVE_BASE['local_costmap']['global_frame'], gmapping['odom_frame'],
-            amcl['odom_frame_id']} == {DRIVE['odometryFrame']}
+        DRIVE['robotBaseFrame']
+    }
+    assert {
+        MOVE_BASE['local_costmap']['global_frame'],
+        gmapping['odom_frame'],
+        amcl['odom_frame_id'],
+    } == {DRIVE['odometryFrame']}
     assert COSTMAP['obstacle_layer']['scan']['topic'] == ROBOT.findtext('.//topicName')
     text = (PACKAGE / 'launch/inc/move_base.launch.xml').read_text(encoding='utf-8')
     assert f'from="cmd_vel" to="{DRIVE["commandTopic"]}"' in text
@@ -104,8 +124,11 @@ def test_frames_and_topics_are_those_of_the_drive_and_the_scanner():
 
 def test_each_plugin_of_move_base_is_of_a_package_that_is_built():
     targets = yaml.safe_load((ROOT / 'tools/navigation/targets.yaml').read_text(encoding='utf-8'))
-    layers = [layer['type'] for costmap in ('global_costmap', 'local_costmap')
-              for layer in MOVE_BASE[costmap]['plugins']]
+    layers = [
+        layer['type']
+        for costmap in ('global_costmap', 'local_costmap')
+        for layer in MOVE_BASE[costmap]['plugins']
+    ]
     planners = [MOVE_BASE['base_global_planner'], MOVE_BASE['base_local_planner']]
     assert {re.split('::|/', name)[0] for name in layers + planners} <= set(targets)
     for costmap in ('global_costmap', 'local_costmap'):
@@ -113,11 +136,16 @@ def test_each_plugin_of_move_base_is_of_a_package_that_is_built():
         assert names - {'static_layer'} == {'obstacle_layer', 'inflation_layer'} < set(COSTMAP)
 
 
-@pytest.mark.parametrize(('view', 'tools'), [
-    ('mapping', {}),
-    ('navigation', {'rviz/SetInitialPose': '/initialpose',
-                    'rviz/SetGoal': '/move_base_simple/goal'}),
-])
+@pytest.mark.parametrize(
+    ('view', 'tools'),
+    [
+        ('mapping', {}),
+        (
+            'navigation',
+            {'rviz/SetInitialPose': '/initialpose', 'rviz/SetGoal': '/move_base_simple/goal'},
+        ),
+    ],
+)
 def test_views_are_of_the_map_and_have_the_tools(view, tools):
     text = (PACKAGE / 'config' / f'{view}.rviz').read_text(encoding='utf-8')
     manager = yaml.safe_load(text)['Visualization Manager']
@@ -126,20 +154,30 @@ def test_views_are_of_the_map_and_have_the_tools(view, tools):
 
 
 def require(*names, path=''):
-    return subprocess.run([sys.executable, PACKAGE / 'launch' / 'require_packages', *names],
-                          capture_output=True, text=True, check=False,
-                          env={'ROS_PACKAGE_PATH': str(path), 'PATH': '/usr/bin:/bin'})
+    return subprocess.run(
+        [sys.executable, PACKAGE / 'launch' / 'require_packages', *names],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={'ROS_PACKAGE_PATH': str(path), 'PATH': '/usr/bin:/bin'},
+    )
 
 
-@pytest.mark.parametrize(('missing', 'named'), [
-    (['amcl'], 'amcl'), (['amcl', 'move_base'], 'amcl and move_base'),
-    (['map_server', 'amcl', 'move_base'], 'map_server, amcl and move_base')])
+@pytest.mark.parametrize(
+    ('missing', 'named'),
+    [
+        (['amcl'], 'amcl'),
+        (['amcl', 'move_base'], 'amcl and move_base'),
+        (['map_server', 'amcl', 'move_base'], 'map_server, amcl and move_base'),
+    ],
+)
 def test_missing_packages_are_named_with_the_command_that_builds_them(missing, named):
     done = require('rosbots_navigation', *missing, path=PACKAGE)
     assert (done.returncode, done.stdout) == (1, '')
     assert done.stderr == (
         f'rosbots_navigation needs {named}, which Debian lacks; to build what is '
-        'missing, run: ./rosbots navigation\n')
+        'missing, run: ./rosbots navigation\n'
+    )
 
 
 def test_versions_of_the_packages_are_printed():
@@ -153,8 +191,7 @@ def test_goals_that_cannot_be_read_are_refused_in_one_sentence(monkeypatch, word
     monkeypatch.setattr(sys, 'argv', ['drive_to_goals.py', *words])
     with pytest.raises(SystemExit) as end:
         runpy.run_path(str(PACKAGE / 'scripts' / 'drive_to_goals.py'), run_name='__main__')
-    assert end.value.code == (
-        f'drive_to_goals.py: a goal is X,Y or X,Y,YAW, not {" ".join(words)}')
+    assert end.value.code == (f'drive_to_goals.py: a goal is X,Y or X,Y,YAW, not {" ".join(words)}')
 
 
 def test_drive_to_goals_says_in_a_sentence_that_there_is_no_master(monkeypatch, capsys):
@@ -168,11 +205,14 @@ def test_drive_to_goals_says_in_a_sentence_that_there_is_no_master(monkeypatch, 
     assert ended.value.code == f'drive_to_goals.py: no ROS master answers at {address}'
 
 
-@pytest.mark.parametrize(('error', 'said'), [
-    (rospy.ServiceException('unable to contact master'), 'unable to contact master'),
-    (ConnectionRefusedError(111, 'Connection refused'), '[Errno 111] Connection refused'),
-    (rospy.ROSInterruptException('shutdown'), 'stopped before the last goal'),
-])
+@pytest.mark.parametrize(
+    ('error', 'said'),
+    [
+        (rospy.ServiceException('unable to contact master'), 'unable to contact master'),
+        (ConnectionRefusedError(111, 'Connection refused'), '[Errno 111] Connection refused'),
+        (rospy.ROSInterruptException('shutdown'), 'stopped before the last goal'),
+    ],
+)
 def test_drive_to_goals_says_in_a_sentence_that_the_master_has_died(monkeypatch, error, said):
     def fail(*_arguments, **_options):
         raise error

@@ -20,12 +20,16 @@ def forbid(event, arguments):
 sys.addaudithook(forbid)
 """
 LOAD_URDF = 'from rosbots_description.sim.formats.urdf.urdf import load_urdf; load_urdf(TEXT, "m")'
-LOAD_SDF = ('from rosbots_description.ros_api.node.packages import find_model, find_package; '
-            'from rosbots_description.sim.formats.sdf.sdf import load_sdf; '
-            'load_sdf(TEXT, "m", find_model=find_model, find_package=find_package)')
+LOAD_SDF = (
+    'from rosbots_description.ros_api.node.packages import find_model, find_package; '
+    'from rosbots_description.sim.formats.sdf.sdf import load_sdf; '
+    'load_sdf(TEXT, "m", find_model=find_model, find_package=find_package)'
+)
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
-MESH = f'<link name="l">{INERTIAL}' \
+MESH = (
+    f'<link name="l">{INERTIAL}'
     '<collision><geometry><mesh filename="{}"/></geometry></collision></link>'
+)
 SDF = '<sdf version="1.6"><world name="w"><include><uri>{}</uri></include></world></sdf>'
 COLLADA = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -38,8 +42,13 @@ def run(code, text=''):
     """Run code with TEXT under the guard; return the last line of its error output."""
     python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
     done = subprocess.run(
-        [sys.executable, '-c', f'{GUARD}\nTEXT = {text!r}\n{code}'], capture_output=True, text=True,
-        env={**os.environ, 'PYTHONPATH': python_path}, timeout=60, check=False)
+        [sys.executable, '-c', f'{GUARD}\nTEXT = {text!r}\n{code}'],
+        capture_output=True,
+        text=True,
+        env={**os.environ, 'PYTHONPATH': python_path},
+        timeout=60,
+        check=False,
+    )
     return (done.stderr.splitlines() or [''])[-1]
 
 
@@ -48,23 +57,39 @@ def test_the_guard_notices_a_connection():
     assert run('import socket; socket.create_connection(("localhost", 9))').startswith('socket.')
 
 
-@pytest.mark.parametrize(('load', 'text', 'message'), [
-    (LOAD_URDF, f'<robot name="r">{MESH.format("http://example.org/m.dae")}</robot>',
-     'http:// addresses are not read here'),
-    (LOAD_URDF, '<!DOCTYPE robot SYSTEM "http://example.org/r.dtd"><robot name="r"/>',
-     'a document type (<!DOCTYPE>) is not accepted'),
-    (LOAD_SDF, SDF.format('http://example.org/m'),
-     'models are not fetched from the network'),
-    (LOAD_SDF, SDF.format('model://euro_pallet'),
-     "'model://euro_pallet' is not to be found along the model path"),
-], ids=['mesh', 'document type', 'included address', 'unknown model'])
+@pytest.mark.parametrize(
+    ('load', 'text', 'message'),
+    [
+        (
+            LOAD_URDF,
+            f'<robot name="r">{MESH.format("http://example.org/m.dae")}</robot>',
+            'http:// addresses are not read here',
+        ),
+        (
+            LOAD_URDF,
+            '<!DOCTYPE robot SYSTEM "http://example.org/r.dtd"><robot name="r"/>',
+            'a document type (<!DOCTYPE>) is not accepted',
+        ),
+        (LOAD_SDF, SDF.format('http://example.org/m'), 'models are not fetched from the network'),
+        (
+            LOAD_SDF,
+            SDF.format('model://euro_pallet'),
+            "'model://euro_pallet' is not to be found along the model path",
+        ),
+    ],
+    ids=['mesh', 'document type', 'included address', 'unknown model'],
+)
 def test_address_is_rejected_without_network_access(load, text, message):
     assert message in run(load, text)
 
 
-@pytest.mark.parametrize(('name', 'content', 'message'), [
-    ('m.dae', COLLADA, 'm.dae\' '), ('m.obj', OBJECT, ''),
-])
+@pytest.mark.parametrize(
+    ('name', 'content', 'message'),
+    [
+        ('m.dae', COLLADA, "m.dae' "),
+        ('m.obj', OBJECT, ''),
+    ],
+)
 def test_mesh_file_does_not_open_other_addresses(tmp_path, name, content, message):
     path = tmp_path / name
     path.write_text(content, encoding='utf-8')
@@ -79,5 +104,6 @@ def test_model_of_the_database_is_searched_on_the_model_path_only(model):
     code = (
         'import argparse\n'
         'from rosbots_description.ros_api.clients.spawn_model import _fetch\n'
-        f'TEXT = _fetch(argparse.Namespace(file=None, param=None, database={model!r}))\n')
+        f'TEXT = _fetch(argparse.Namespace(file=None, param=None, database={model!r}))\n'
+    )
     assert f"'model://{model}' is not to be found along the model path" in run(code + LOAD_SDF)

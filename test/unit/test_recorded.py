@@ -41,10 +41,18 @@ def test_rebounds_replace_place_and_velocity():
     assert exceeded([OFF, OFF._replace(quantity='b::link velocity'), rebound]) == []
 
 
-@pytest.mark.parametrize(('gazebo', 'mechanics', 'ours', 'off'), [
-    (1.0, 1.1, 1.05, 0.0), (1.1, 1.0, 1.0, 0.0), (1.0, 1.1, 1.13, 0.03), (1.1, 1.0, 0.98, -0.02),
-    (-1.0, -1.1, -1.13, -0.03), (1.0, None, 1.02, 0.02), (1.0, None, 0.9, -0.1),
-])
+@pytest.mark.parametrize(
+    ('gazebo', 'mechanics', 'ours', 'off'),
+    [
+        (1.0, 1.1, 1.05, 0.0),
+        (1.1, 1.0, 1.0, 0.0),
+        (1.0, 1.1, 1.13, 0.03),
+        (1.1, 1.0, 0.98, -0.02),
+        (-1.0, -1.1, -1.13, -0.03),
+        (1.0, None, 1.02, 0.02),
+        (1.0, None, 0.9, -0.1),
+    ],
+)
 def test_a_speed_is_compared_with_the_interval_between_gazebo_and_mechanics(
     gazebo, mechanics, ours, off
 ):

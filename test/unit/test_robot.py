@@ -24,8 +24,9 @@ TOLERANCE = 1e-9  # in the unit of each number
 def expanded(**arguments: str) -> str:
     """Return the URDF text for xacro arguments; the package is that of this file."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('ROS_PACKAGE_PATH', os.pathsep.join(
-            [str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')]))
+        patch.setenv(
+            'ROS_PACKAGE_PATH', os.pathsep.join([str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')])
+        )
         patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
         return import_xacro().process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
 
@@ -58,8 +59,9 @@ def link_meaning(link: ElementTree.Element) -> dict:
         if part.tag == 'inertial':
             assert {child.tag for child in part} == {'origin', 'mass', 'inertia'}
             meaning[part.tag]['mass'] = float(part.find('mass').get('value'))
-            meaning[part.tag]['inertia'] = {key: float(value)
-                                            for key, value in part.find('inertia').attrib.items()}
+            meaning[part.tag]['inertia'] = {
+                key: float(value) for key, value in part.find('inertia').attrib.items()
+            }
         else:
             assert {child.tag for child in part} == {'origin', 'geometry'}
             meaning[part.tag]['geometry'] = shape(part.find('geometry'))
@@ -67,8 +69,12 @@ def link_meaning(link: ElementTree.Element) -> dict:
 
 
 def joint_meaning(joint: ElementTree.Element) -> dict:
-    meaning = {'type': joint.get('type'), 'parent': joint.find('parent').get('link'),
-               'child': joint.find('child').get('link'), 'origin': origin(joint)}
+    meaning = {
+        'type': joint.get('type'),
+        'parent': joint.find('parent').get('link'),
+        'child': joint.find('child').get('link'),
+        'origin': origin(joint),
+    }
     if joint.find('axis') is not None:
         meaning['axis'] = numbers(joint.find('axis').get('xyz'))
     assert {child.tag for child in joint} <= {'parent', 'child', 'origin', 'axis'}
@@ -128,8 +134,11 @@ def test_plugin_is_the_articles_parameter_by_parameter():
 
 def test_one_tf_tree_changes_two_parameters_and_nothing_else():
     default, one_tree = robot(), robot(one_tf_tree='true')
-    assert parameters(one_tree) == {**parameters(default), 'robotBaseFrame': 'base_footprint',
-                                    'publishWheelTF': 'false'}
+    assert parameters(one_tree) == {
+        **parameters(default),
+        'robotBaseFrame': 'base_footprint',
+        'publishWheelTF': 'false',
+    }
     for tree in (default, one_tree):
         tree.remove(tree.find('gazebo'))
     assert ElementTree.tostring(default) == ElementTree.tostring(one_tree)
@@ -137,8 +146,10 @@ def test_one_tf_tree_changes_two_parameters_and_nothing_else():
 
 # Argument of the xacro -> what it adds: links, and sensors as (link, type, library).
 ADDED = {
-    'camera': ({'camera_link', 'camera_link_optical'},
-               {('camera_link', 'camera', 'libgazebo_ros_camera.so')}),
+    'camera': (
+        {'camera_link', 'camera_link_optical'},
+        {('camera_link', 'camera', 'libgazebo_ros_camera.so')},
+    ),
     'imu': ({'imu_link'}, {('imu_link', 'imu', 'libgazebo_ros_imu_sensor.so')}),
     'laser': ({'laser_link'}, {('laser_link', 'ray', 'libgazebo_ros_laser.so')}),
     'bumper': (set(), {('base_link', 'contact', 'libgazebo_ros_bumper.so')}),
@@ -147,8 +158,11 @@ ADDED = {
 
 
 def sensors(elements: list[ElementTree.Element]) -> set:
-    return {(block.get('reference'), sensor.get('type'), sensor.find('plugin').get('filename'))
-            for block in elements for sensor in block.findall('sensor')}
+    return {
+        (block.get('reference'), sensor.get('type'), sensor.find('plugin').get('filename'))
+        for block in elements
+        for sensor in block.findall('sensor')
+    }
 
 
 def added(**arguments: str) -> list[ElementTree.Element]:
@@ -156,15 +170,17 @@ def added(**arguments: str) -> list[ElementTree.Element]:
     plain, more = list(robot()), list(robot(**arguments))
     for one, other in zip(plain, more, strict=False):
         assert ElementTree.tostring(one).strip() == ElementTree.tostring(other).strip()
-    return more[len(plain):]
+    return more[len(plain) :]
 
 
 @pytest.mark.parametrize('argument', ADDED)
 def test_an_argument_adds_its_sensor_and_nothing_else(argument):
     links, expected = ADDED[argument]
     elements = added(**{argument: 'true'})
-    new = {tag: [element for element in elements if element.tag == tag]
-           for tag in ('link', 'joint', 'gazebo')}
+    new = {
+        tag: [element for element in elements if element.tag == tag]
+        for tag in ('link', 'joint', 'gazebo')
+    }
     assert sum(map(len, new.values())) == len(elements) > 0
     assert {link.get('name') for link in new['link']} == links
     assert {joint.find('child').get('link') for joint in new['joint']} == links
@@ -177,7 +193,8 @@ def test_an_argument_adds_its_sensor_and_nothing_else(argument):
 
 def test_argument_depth_selects_a_depth_camera():
     assert sensors(added(camera='true', depth='true')) == {
-        ('camera_link', 'depth', 'libgazebo_ros_openni_kinect.so')}
+        ('camera_link', 'depth', 'libgazebo_ros_openni_kinect.so')
+    }
     assert added(depth='true') == []
 
 
@@ -193,22 +210,36 @@ def test_camera_has_the_given_pitch_and_the_frames_of_rep_103():
 
 
 def test_surfaces_are_those_of_the_course():
-    blocks = {block.get('reference'): {child.tag: child.text for child in block}
-              for block in added(surfaces='true')}
-    tyre = {'mu1': '1.0', 'mu2': '1.0', 'kp': '1000000.0', 'kd': '100.0', 'minDepth': '0.001',
-            'maxVel': '1.0'}
+    blocks = {
+        block.get('reference'): {child.tag: child.text for child in block}
+        for block in added(surfaces='true')
+    }
+    tyre = {
+        'mu1': '1.0',
+        'mu2': '1.0',
+        'kp': '1000000.0',
+        'kd': '100.0',
+        'minDepth': '0.001',
+        'maxVel': '1.0',
+    }
     assert blocks == {
-        'wheel_left_link': tyre, 'wheel_right_link': tyre,
-        'base_link': {'material': 'Gazebo/Blue', 'mu1': '0.3', 'mu2': '0.3'}}
+        'wheel_left_link': tyre,
+        'wheel_right_link': tyre,
+        'base_link': {'material': 'Gazebo/Blue', 'mu1': '0.3', 'mu2': '0.3'},
+    }
 
 
 def tf_parents(tree: ElementTree.Element) -> dict:
     """Return for each TF frame all its parents, with a robot_state_publisher beside the plugin."""
     joints = tree.findall('joint')
-    parents = {joint.find('child').get('link'): [joint.find('parent').get('link')]
-               for joint in joints}
-    fixed = {joint.find('child').get('link'): joint.find('parent').get('link')
-             for joint in joints if joint.get('type') == 'fixed'}
+    parents = {
+        joint.find('child').get('link'): [joint.find('parent').get('link')] for joint in joints
+    }
+    fixed = {
+        joint.find('child').get('link'): joint.find('parent').get('link')
+        for joint in joints
+        if joint.get('type') == 'fixed'
+    }
     plugin = parameters(tree)
     parents.setdefault(plugin['robotBaseFrame'], []).append(plugin['odometryFrame'])
     for side in ('leftJoint', 'rightJoint'):
@@ -240,8 +271,9 @@ def test_one_tf_tree_gives_every_frame_one_parent_below_odom():
 def test_check_urdf_accepts_the_robot(tmp_path):
     path = tmp_path / 'rosbots.urdf'
     path.write_text(expanded(), encoding='utf-8')
-    result = subprocess.run(['check_urdf', str(path)], capture_output=True, text=True, timeout=60,
-                            check=False)
+    result = subprocess.run(
+        ['check_urdf', str(path)], capture_output=True, text=True, timeout=60, check=False
+    )
     assert result.returncode == 0, result.stderr
     assert 'root Link: base_footprint' in result.stdout
 
@@ -261,15 +293,25 @@ def test_every_mesh_of_the_robot_is_in_the_package():
 
 def test_links_without_colour_are_red_as_in_rviz():
     urdf = robot()
-    red = {block.get('reference') for block in urdf.findall('gazebo')
-           if block.findtext('material') == 'Gazebo/Red'}
+    red = {
+        block.get('reference')
+        for block in urdf.findall('gazebo')
+        if block.findtext('material') == 'Gazebo/Red'
+    }
     colourless = {
-        link.get('name') for link in urdf.findall('link') for visual in link.findall('visual')
+        link.get('name')
+        for link in urdf.findall('link')
+        for visual in link.findall('visual')
         if visual.find('material') is None and visual.find('geometry/mesh') is None
     }
     assert red == colourless
     spec, _ = load_urdf(
-        expanded(), 'rosbots', robot_namespace='/', find_package=lambda _: str(ROOT))
-    shown = {visual.material and visual.material.rgba for link in spec.links
-             for visual in link.visuals if not isinstance(visual.geometry, Mesh)}
+        expanded(), 'rosbots', robot_namespace='/', find_package=lambda _: str(ROOT)
+    )
+    shown = {
+        visual.material and visual.material.rgba
+        for link in spec.links
+        for visual in link.visuals
+        if not isinstance(visual.geometry, Mesh)
+    }
     assert shown == {(1.0, 0.0, 0.0, 1.0)}

@@ -52,8 +52,15 @@ def test_environment_has_the_packages_and_the_system_python():
 
 def test_distutils_is_pythons_own_where_there_is_one():
     program = 'import distutils, setuptools; print(distutils.__file__)'
-    result = rosbots('exec', '/usr/bin/python3', '-W', 'ignore', '-c', program,
-                     prefix=('env', '-u', 'SETUPTOOLS_USE_DISTUTILS'))
+    result = rosbots(
+        'exec',
+        '/usr/bin/python3',
+        '-W',
+        'ignore',
+        '-c',
+        program,
+        prefix=('env', '-u', 'SETUPTOOLS_USE_DISTUTILS'),
+    )
     assert result.returncode == 0, result.stderr
     assert ('setuptools' in result.stdout) == (sys.version_info >= (3, 12))
 
@@ -89,11 +96,12 @@ def test_packages_are_linked_except_those_that_the_user_has(tmp_path):
     result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')
     assert result.returncode == 0, result.stderr
     assert result.stdout.splitlines()[0] == (
-        f'teleop_twist_keyboard is yours, in {own}; ours is left out')
+        f'teleop_twist_keyboard is yours, in {own}; ours is left out'
+    )
     linked = {link.name: link.resolve() for link in source.iterdir() if link.is_symlink()}
-    assert linked == {name: ROOT / 'companions' / name
-                      for name in packages - {'teleop_twist_keyboard'}} \
-        | {'rosbots_description': ROOT}
+    assert linked == {
+        name: ROOT / 'companions' / name for name in packages - {'teleop_twist_keyboard'}
+    } | {'rosbots_description': ROOT}
     assert 'nothing new' in rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='').stdout
 
 
@@ -110,7 +118,9 @@ def test_error_names_what_is_in_the_way_of_a_link(tmp_path):
     (tmp_path / 'src' / 'xacro').mkdir(parents=True)
     result = rosbots('link', str(tmp_path), ROS_PACKAGE_PATH='')
     assert (result.returncode, result.stderr) == (
-        2, f'rosbots: {tmp_path}/src/xacro is in the way and is not a package of that name\n')
+        2,
+        f'rosbots: {tmp_path}/src/xacro is in the way and is not a package of that name\n',
+    )
 
 
 def test_workspace_over_one_with_the_users_robot_gets_no_second_one(theirs, tmp_path):
@@ -128,23 +138,37 @@ def test_command_in_the_list_installs_the_optional_packages(tmp_path):
     (tmp_path / 'sudo').chmod(0o755)
     text = (ROOT / 'requirements' / 'optional.apt').read_text()
     (command,) = re.findall('^# All of them: (.*)', text, re.M)
-    shown = subprocess.run(['sh', '-c', command], cwd=ROOT, capture_output=True, text=True,
-                           env={'PATH': f'{tmp_path}:/usr/bin:/bin'}, check=True).stdout.split()
+    shown = subprocess.run(
+        ['sh', '-c', command],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={'PATH': f'{tmp_path}:/usr/bin:/bin'},
+        check=True,
+    ).stdout.split()
     packages = [line for line in text.splitlines() if line and not line.startswith('#')]
     assert shown == ['apt-get', 'install', '-y', '--no-install-recommends', *packages]
 
 
-@pytest.mark.parametrize(('arguments', 'sees_theirs'), [
-    (('exec', 'rospack'), True), (('launch',), True), (('shell', '-c', ':'), True),
-    (('demo',), False), (('test',), False),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'sees_theirs'),
+    [
+        (('exec', 'rospack'), True),
+        (('launch',), True),
+        (('shell', '-c', ':'), True),
+        (('demo',), False),
+        (('test',), False),
+    ],
+)
 def test_users_package_takes_precedence_except_in_demo_and_test(
-        arguments, sees_theirs, theirs, tmp_path):
+    arguments, sees_theirs, theirs, tmp_path
+):
     # the final exec is replaced to show which package it would use
     instead = tmp_path / 'instead.bash'
     # (a redirection of the set-up is not the final one)
-    instead.write_text('exec() { if type -P "$1" > /dev/null; then rospack find '
-                       'rosbots_description; fi; }')
+    instead.write_text(
+        'exec() { if type -P "$1" > /dev/null; then rospack find rosbots_description; fi; }'
+    )
     result = rosbots(*arguments, BASH_ENV=str(instead), ROS_PACKAGE_PATH=str(theirs.parent))
     found = os.path.realpath(result.stdout.strip())
     assert found == str(theirs if sees_theirs else ROOT), result.stderr
@@ -159,19 +183,33 @@ def test_file_of_an_unbuilt_package_on_the_path_comes_before_ours(tmp_path, path
     (folder / 'package.xml').write_text(
         '<package format="2"><name>gazebo_plugins</name><version>1.0.0</version><description>x'
         '</description><maintainer email="a@b.example">a</maintainer><license>BSD</license>'
-        '</package>')
+        '</package>'
+    )
     (tmp_path / 'see.launch').write_text(
-        f'<launch><param name="found" value="$(find gazebo_plugins)/{inner}"/></launch>')
-    result = rosbots('exec', 'roslaunch', '--dump-params', str(tmp_path / 'see.launch'),
-                     ROS_PACKAGE_PATH=path.format(tmp_path))
+        f'<launch><param name="found" value="$(find gazebo_plugins)/{inner}"/></launch>'
+    )
+    result = rosbots(
+        'exec',
+        'roslaunch',
+        '--dump-params',
+        str(tmp_path / 'see.launch'),
+        ROS_PACKAGE_PATH=path.format(tmp_path),
+    )
     assert os.path.realpath(result.stdout.split()[-1]) == str(folder / inner), result.stderr
 
 
 def test_interactive_shell_keeps_the_workspace_of_bashrc_before_ours(theirs, tmp_path):
     (tmp_path / '.bashrc').write_text(
-        f'unset CMAKE_PREFIX_PATH PYTHONPATH; ROS_PACKAGE_PATH={theirs.parent}')
-    shell = ('bash', '--rcfile', str(ROOT / 'tools' / 'shell.bashrc'), '-i', '-c',
-             'rospack find rosbots_description; rospack find gazebo_ros; echo $unset')
+        f'unset CMAKE_PREFIX_PATH PYTHONPATH; ROS_PACKAGE_PATH={theirs.parent}'
+    )
+    shell = (
+        'bash',
+        '--rcfile',
+        str(ROOT / 'tools' / 'shell.bashrc'),
+        '-i',
+        '-c',
+        'rospack find rosbots_description; rospack find gazebo_ros; echo $unset',
+    )
     result = rosbots('exec', *shell, HOME=str(tmp_path))
     assert result.returncode == 0, result.stderr
     own, gazebo = result.stdout.split()
@@ -213,7 +251,12 @@ exec "$@"
 def on_full_disks(places, *command, **environment):
     done = subprocess.run(
         [*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, '--', *command],
-        env=os.environ | environment, capture_output=True, text=True, timeout=60, check=False)
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     if done.returncode == 77:
         pytest.skip(f'this machine lets nobody mount a disk: {done.stderr.strip()}')
     return done
@@ -221,8 +264,15 @@ def on_full_disks(places, *command, **environment):
 
 @pytest.mark.parametrize('others', [(), ('/dev/shm',)])
 def test_full_temporary_folder_does_no_harm(tmp_path, others):
-    result = on_full_disks([tmp_path, *others], ROOT / 'rosbots', 'exec', 'sh', '-c',
-                           'rospack find gazebo_ros && echo "$TMPDIR"', TMPDIR=str(tmp_path))
+    result = on_full_disks(
+        [tmp_path, *others],
+        ROOT / 'rosbots',
+        'exec',
+        'sh',
+        '-c',
+        'rospack find gazebo_ros && echo "$TMPDIR"',
+        TMPDIR=str(tmp_path),
+    )
     assert result.returncode == 0, result.stderr
     found, temporary = result.stdout.splitlines()
     assert found.endswith('gazebo_ros')
@@ -235,10 +285,16 @@ def test_error_without_any_writable_folder_names_all_of_them(tmp_path):
     for place in (temporary, workspace):
         place.mkdir()
     result = on_full_disks(
-        [temporary, '/dev/shm', workspace], 'bash', '-euc',
+        [temporary, '/dev/shm', workspace],
+        'bash',
+        '-euc',
         'source "$ROOT/tools/environment.bash"; source_workspace',
-        ROOT=str(ROOT), WORKSPACE=str(workspace), TMPDIR=str(temporary))
+        ROOT=str(ROOT),
+        WORKSPACE=str(workspace),
+        TMPDIR=str(temporary),
+    )
     assert result.returncode == 1
     assert result.stderr == (
         f'rosbots: nothing can be written in {temporary}, /dev/shm and {workspace}; '
-        'make room in one of them, or set TMPDIR to a folder that has some\n')
+        'make room in one of them, or set TMPDIR to a folder that has some\n'
+    )

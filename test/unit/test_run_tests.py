@@ -39,7 +39,7 @@ def test_the_longest_rostests_begin_first_and_none_is_lost(modules):
     every = rostests.choose('')
     ordered = rostests.in_order(every)
     assert sorted(ordered) == every
-    assert [path.stem for path in ordered[:len(rostests.LONGEST)]] == list(rostests.LONGEST)
+    assert [path.stem for path in ordered[: len(rostests.LONGEST)]] == list(rostests.LONGEST)
 
 
 def test_failures_are_named_as_pytest_names_them(modules, tmp_path):
@@ -48,7 +48,7 @@ def test_failures_are_named_as_pytest_names_them(modules, tmp_path):
     path.write_text(JUNIT)
     report = results.read_report(path)
     assert (report.count.passed, report.count.failed, report.count.skipped) == (1, 1, 1)
-    case, = report.failed
+    (case,) = report.failed
     node = run_tests.node_of(case.class_name, case.name)
     assert node == 'test/unit/test_robot.py::test_b[x-1]'
     assert case.reason == 'Traceback:\n  line 7'
@@ -62,7 +62,8 @@ def test_a_report_that_cannot_be_read_is_a_failure(modules, tmp_path):
 def run_with(run_tests, monkeypatch, code, arguments=('lint',)):
     command = [sys.executable, '-c', f'print("the cause"); raise SystemExit({code})']
     monkeypatch.setitem(
-        run_tests.PHASES, 'lint', lambda _word: run_tests.run_command('lint', 'mypy', command))
+        run_tests.PHASES, 'lint', lambda _word: run_tests.run_command('lint', 'mypy', command)
+    )
     return run_tests.main([*arguments])
 
 
@@ -91,7 +92,8 @@ def test_a_failed_test_is_repeated_with_its_seed_and_says_why(modules, capsys):
     results, _, _ = modules
     reason = '\n'.join(f'line {number}' for number in range(99))
     results.say_failures(
-        (results.Failure('x', './rosbots test test/rostest/frames.test', Path('log'), reason),), 7)
+        (results.Failure('x', './rosbots test test/rostest/frames.test', Path('log'), reason),), 7
+    )
     printed = capsys.readouterr().out
     assert 'repeat: ./rosbots test test/rostest/frames.test --seed 7\n' in printed
     assert printed.endswith('        line 97\n        line 98\n')  # where the cause is
@@ -128,7 +130,8 @@ def test_repeated_runs_end_with_a_table(repeat_tests, monkeypatch, capsys):
     ]
     given = []
     monkeypatch.setattr(
-        repeat_tests, 'run', lambda words: given.append(words) or summaries[len(given) - 1])
+        repeat_tests, 'run', lambda words: given.append(words) or summaries[len(given) - 1]
+    )
     assert repeat_tests.main(['3', 'unit']) == 1
     assert given == [['unit', '--seed', str(number)] for number in range(3)]
     assert capsys.readouterr().out.endswith("""
@@ -146,8 +149,11 @@ def test_repeated_runs_are_made_beside_busy_processes_which_end(repeat_tests, mo
     from rosbots_description.cli.launched import descendants
 
     seen = []
-    monkeypatch.setattr(repeat_tests, 'run', lambda _: seen.extend(descendants(os.getpid())) or {
-        'seconds': {}, 'failures': []})
+    monkeypatch.setattr(
+        repeat_tests,
+        'run',
+        lambda _: seen.extend(descendants(os.getpid())) or {'seconds': {}, 'failures': []},
+    )
     before = set(descendants(os.getpid()))
     assert repeat_tests.main(['1', '--load', '2']) == 0
     busy = set(seen) - before

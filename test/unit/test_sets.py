@@ -21,11 +21,16 @@ def entries(path):
 
 def in_setup(script, debian='12', architecture='amd64'):
     """Return the lines that a script prints, with the functions of the set-up, on a platform."""
-    program = (f'source "$ROOT/tools/setup.bash"; DEBIAN={debian} ARCHITECTURE={architecture}; '
-               f'{script}')
+    program = (
+        f'source "$ROOT/tools/setup.bash"; DEBIAN={debian} ARCHITECTURE={architecture}; {script}'
+    )
     done = subprocess.run(
-        ['bash', '-euc', program], env={'ROOT': str(ROOT), 'PATH': '/usr/bin:/bin'},
-        capture_output=True, text=True, check=True)
+        ['bash', '-euc', program],
+        env={'ROOT': str(ROOT), 'PATH': '/usr/bin:/bin'},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     return done.stdout.splitlines()
 
 
@@ -45,26 +50,39 @@ def sets_of(tmp_path):
     (tmp_path / 'tools').mkdir()
     (tmp_path / 'tools' / 'environment.bash').touch()
     (tmp_path / 'tools' / 'setup.bash').write_text(
-        f'SETS=({" ".join(SETS)}); set_up() {{ echo "$@"; exit; }}')
+        f'SETS=({" ".join(SETS)}); set_up() {{ echo "$@"; exit; }}'
+    )
 
     def run(*arguments):
-        return subprocess.run([tmp_path / 'rosbots', *arguments], capture_output=True, text=True,
-                              check=False)
+        return subprocess.run(
+            [tmp_path / 'rosbots', *arguments], capture_output=True, text=True, check=False
+        )
+
     return run
 
 
-@pytest.mark.parametrize(('command', 'sets'), [
-    ('demo', 'demo'), ('demo --web', 'web'), ('shell', 'base'), ('exec true', 'base'),
-    ('launch gazebo_ros empty_world.launch', 'base'),
-    ('launch gazebo_ros empty_world.launch gui:=false web:=true', 'web'),
-    ('launch gazebo_ros empty_world.launch web:=True', 'web'),
-    ('launch gazebo_ros empty_world.launch web:=false', 'base'),
-    ('batch scenario.yaml', 'batch'), ('bench web', 'bench'), ('test unit', 'test'),
-    ('link workspace', 'base'), ('navigation', 'navigation'), ('doc', 'doc'),
-    ('setup', 'base'),
-    ('setup gym web', 'gym web'),
-    ('setup --all', ' '.join(SETS)),
-])
+@pytest.mark.parametrize(
+    ('command', 'sets'),
+    [
+        ('demo', 'demo'),
+        ('demo --web', 'web'),
+        ('shell', 'base'),
+        ('exec true', 'base'),
+        ('launch gazebo_ros empty_world.launch', 'base'),
+        ('launch gazebo_ros empty_world.launch gui:=false web:=true', 'web'),
+        ('launch gazebo_ros empty_world.launch web:=True', 'web'),
+        ('launch gazebo_ros empty_world.launch web:=false', 'base'),
+        ('batch scenario.yaml', 'batch'),
+        ('bench web', 'bench'),
+        ('test unit', 'test'),
+        ('link workspace', 'base'),
+        ('navigation', 'navigation'),
+        ('doc', 'doc'),
+        ('setup', 'base'),
+        ('setup gym web', 'gym web'),
+        ('setup --all', ' '.join(SETS)),
+    ],
+)
 def test_command_installs_its_set(sets_of, command, sets):
     assert sets_of(*command.split()).stdout.strip() == sets
 
@@ -72,8 +90,10 @@ def test_command_installs_its_set(sets_of, command, sets):
 def test_unknown_set_is_named_with_the_known_ones(sets_of):
     result = sets_of('setup', 'base', 'moon')
     assert (result.returncode, result.stdout) == (2, '')
-    assert result.stderr == ("rosbots: there is no set 'moon'; the sets are demo base web gym "
-                             'batch navigation doc test bench, and --all is all of them\n')
+    assert result.stderr == (
+        "rosbots: there is no set 'moon'; the sets are demo base web gym "
+        'batch navigation doc test bench, and --all is all of them\n'
+    )
 
 
 def test_files_are_those_of_the_sets():
@@ -89,7 +109,8 @@ def test_first_line_says_what_a_set_is_for_and_how_large_it_is(name):
 
 def test_included_sets_come_first_and_once():
     assert in_setup('with_included gym test; echo "${CHOSEN[@]}"') == [
-        'core demo base gym web batch doc test']
+        'core demo base gym web batch doc test'
+    ]
 
 
 def test_python_packages_are_pinned_or_come_from_debian():
@@ -101,8 +122,11 @@ def test_python_packages_are_pinned_or_come_from_debian():
 
 
 def test_rows_of_the_table_are_of_packages_in_the_lists():
-    names = {re.split('==', entry[0])[0] for path in REQUIREMENTS.glob('*.pip')
-             for entry in entries(path)}
+    names = {
+        re.split('==', entry[0])[0]
+        for path in REQUIREMENTS.glob('*.pip')
+        for entry in entries(path)
+    }
     assert {row[0] for row in entries(REQUIREMENTS / 'debian.txt')} <= names
 
 
@@ -118,10 +142,15 @@ def test_a_python_package_comes_from_debian_or_from_pypi(debian, architecture):
     assert {'pybullet', 'viser'} <= modules
 
 
-@pytest.mark.parametrize(('platform', 'builds'), [
-    (('12', 'amd64'), False), (('13', 'amd64'), True),
-    (('12', 'arm64'), True), (('13', 'arm64'), True),
-])
+@pytest.mark.parametrize(
+    ('platform', 'builds'),
+    [
+        (('12', 'amd64'), False),
+        (('13', 'amd64'), True),
+        (('12', 'arm64'), True),
+        (('13', 'arm64'), True),
+    ],
+)
 def test_headers_of_python_are_installed_where_something_is_built(platform, builds):
     debian, architecture = platform
     packages = debian_packages('demo', debian=debian, architecture=architecture)
@@ -134,7 +163,13 @@ def test_base_has_no_browser_and_no_test_tools():
         assert name in of_all
     assert not {'chromium', 'catkin-lint', 'python3-pytest', 'xvfb'} & debian_packages('base')
     assert python_packages('base') == {
-        'embreex', 'matplotlib', 'moderngl', 'pybullet', 'pycollada', 'xacro'}
+        'embreex',
+        'matplotlib',
+        'moderngl',
+        'pybullet',
+        'pycollada',
+        'xacro',
+    }
 
 
 def test_the_demo_needs_no_compiler_no_catkin_and_no_rviz():

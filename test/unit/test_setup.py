@@ -18,8 +18,10 @@ def arguments(monkeypatch, folder):
 
 def test_requirements_are_those_of_the_sets(monkeypatch):
     called = arguments(monkeypatch, ROOT)
-    for name, requirements in {'core': called['install_requires'],
-                               **called['extras_require']}.items():
+    for name, requirements in {
+        'core': called['install_requires'],
+        **called['extras_require'],
+    }.items():
         text = (ROOT / 'requirements' / f'{name}.pip').read_text(encoding='utf-8')
         assert requirements
         assert len(requirements) == len(re.findall('^[A-Za-z]', text, re.M))
@@ -34,7 +36,8 @@ def test_the_companion_installs_the_same_packages_under_its_own_name(monkeypatch
     theirs = arguments(monkeypatch, ROOT / 'companions' / 'rosbots_simulator')
     assert theirs['name'] == 'rosbots_simulator'
     assert theirs['packages'] == [
-        name.replace('rosbots_description', 'rosbots_simulator') for name in ours['packages']]
+        name.replace('rosbots_description', 'rosbots_simulator') for name in ours['packages']
+    ]
     assert [folder for folder, _ in theirs['data_files']] == ['share/rosbots_simulator/']
 
 

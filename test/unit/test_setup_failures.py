@@ -17,25 +17,39 @@ def set_up(script, workspace):
     done = subprocess.run(
         ['bash', '-euc', f'source "$ROOT/tools/setup.bash"; choose_sets base; {script}'],
         env={'ROOT': str(ROOT), 'WORKSPACE': str(workspace), 'PATH': '/usr/bin:/bin'},
-        capture_output=True, text=True, timeout=60, check=False)
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize(('log', 'sentence'), [
-    ('E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt-get)',
-     'another program is installing packages; run this again when it has ended'),
-    ("Err:1 http://mirror.example/debian bookworm InRelease\n  Temporary failure resolving 'x'",
-     'a server of packages cannot be reached'),
-    ('urllib3: Failed to establish a new connection: [Errno -3] Temporary failure in name',
-     'a server of packages cannot be reached'),
-    ("E: You don't have enough free space in /var/cache/apt/archives/.", 'the disk is full'),
-    ('OSError: [Errno 28] No space left on device', 'the disk is full'),
-    ("OSError: [Errno 30] Read-only file system: 'lib'", 'a folder cannot be written'),
-])
+@pytest.mark.parametrize(
+    ('log', 'sentence'),
+    [
+        (
+            'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt-get)',
+            'another program is installing packages; run this again when it has ended',
+        ),
+        (
+            "Err:1 http://mirror.example/debian bookworm InRelease\n  Temporary failure resolving 'x'",
+            'a server of packages cannot be reached',
+        ),
+        (
+            'urllib3: Failed to establish a new connection: [Errno -3] Temporary failure in name',
+            'a server of packages cannot be reached',
+        ),
+        ("E: You don't have enough free space in /var/cache/apt/archives/.", 'the disk is full'),
+        ('OSError: [Errno 28] No space left on device', 'the disk is full'),
+        ("OSError: [Errno 30] Read-only file system: 'lib'", 'a folder cannot be written'),
+    ],
+)
 def test_cause_that_a_log_names_is_the_only_message(tmp_path, log, sentence):
     (tmp_path / 'output').write_text(f'Reading …\n{log}\nE: giving up\n')
-    code, errors = set_up(f'stop() {{ cat {tmp_path}/output; exit 100; }}; phase Title apt stop',
-                          tmp_path)
+    code, errors = set_up(
+        f'stop() {{ cat {tmp_path}/output; exit 100; }}; phase Title apt stop', tmp_path
+    )
     assert code == 1
     assert errors.startswith(f'rosbots: Title: {sentence}')
     assert errors.endswith(f'(details: {tmp_path}/log/apt.log)\n')
@@ -53,10 +67,15 @@ def test_other_systems_are_told_what_they_lack_and_nothing_is_tried(tmp_path, de
     code, errors = set_up(
         f'DEBIAN={debian}; missing_packages() {{ printf "catkin\\ncmake\\n"; }}; '
         'system_name() { echo "Ubuntu 24.04 LTS"; }; phase() { echo tried; }; set_up_packages',
-        tmp_path)
-    assert (code, errors) == (1, (
-        'rosbots: this installs packages on Debian 12 and 13 only (or in a container of it, see '
-        'Containerfile); this machine, Ubuntu 24.04 LTS, lacks catkin cmake\n'))
+        tmp_path,
+    )
+    assert (code, errors) == (
+        1,
+        (
+            'rosbots: this installs packages on Debian 12 and 13 only (or in a container of it, see '
+            'Containerfile); this machine, Ubuntu 24.04 LTS, lacks catkin cmake\n'
+        ),
+    )
 
 
 def test_other_systems_with_all_packages_are_welcome(tmp_path):
@@ -66,9 +85,13 @@ def test_other_systems_with_all_packages_are_welcome(tmp_path):
 def test_installation_that_apt_get_does_not_complete_is_an_error(tmp_path):
     code, errors = set_up(
         'DEBIAN=13; sudo() { :; }; phase() { :; }; amount() { :; }; '
-        'missing_packages() { echo catkin; }; set_up_packages', tmp_path)
-    assert (code, errors) == (1, (
-        'rosbots: the installation of Debian packages was interrupted; run this again\n'))
+        'missing_packages() { echo catkin; }; set_up_packages',
+        tmp_path,
+    )
+    assert (code, errors) == (
+        1,
+        ('rosbots: the installation of Debian packages was interrupted; run this again\n'),
+    )
 
 
 def test_python_is_that_of_the_workspace_under_either_catkin():
@@ -78,11 +101,17 @@ def test_python_is_that_of_the_workspace_under_either_catkin():
         assert f'\n{name}:' in cache
         assert f'={program}\n' in cache.partition(f'\n{name}:')[2][:300]
     (line,) = re.findall('^    catkin_make -D.*', (ROOT / 'README.md').read_text('utf-8'), re.M)
-    shown = subprocess.run(['bash', '-c', f'catkin_make() {{ echo "$@"; }}; {line}'],
-                           env={'HOME': '/home/me'}, capture_output=True, text=True, check=True)
+    shown = subprocess.run(
+        ['bash', '-c', f'catkin_make() {{ echo "$@"; }}; {line}'],
+        env={'HOME': '/home/me'},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     python = '/home/me/rosbots/.ws/venv/bin/python3'
     assert shown.stdout.split() == [
-        f'-D{name}_EXECUTABLE={python}' for name in ('PYTHON', 'Python')]
+        f'-D{name}_EXECUTABLE={python}' for name in ('PYTHON', 'Python')
+    ]
 
 
 class _Deaf(BaseHTTPRequestHandler):
@@ -106,22 +135,34 @@ def serving(server):
 
 def require_master_port(uri, *arguments):
     done = subprocess.run(
-        ['bash', '-euc', 'source "$ROOT/tools/environment.bash"; require_master_port "$@"', 'bash',
-         *arguments],
+        [
+            'bash',
+            '-euc',
+            'source "$ROOT/tools/environment.bash"; require_master_port "$@"',
+            'bash',
+            *arguments,
+        ],
         env={'ROOT': str(ROOT), 'ROS_MASTER_URI': uri, 'PATH': '/usr/bin:/bin'},
-        capture_output=True, text=True, timeout=60, check=False)
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     return done.returncode, done.stderr
 
 
 def test_port_that_another_program_has_is_named():
     with serving(HTTPServer(('localhost', 0), _Deaf)) as port:
-        for given in ((f'http://localhost:{port}/', 'gazebo_ros', 'empty_world.launch'),
-                      ('http://localhost:1', '-p', str(port), 'a.launch')):
+        for given in (
+            (f'http://localhost:{port}/', 'gazebo_ros', 'empty_world.launch'),
+            ('http://localhost:1', '-p', str(port), 'a.launch'),
+        ):
             code, errors = require_master_port(*given)
             assert code == 1
             assert errors == (
                 f'rosbots: a program that is no ROS master has port {port}; end it, or choose '
-                f'another port: export ROS_MASTER_URI=http://localhost:{port + 1}\n')
+                f'another port: export ROS_MASTER_URI=http://localhost:{port + 1}\n'
+            )
 
 
 def test_master_and_free_port_are_welcome():

@@ -22,21 +22,29 @@ def clone(tmp_path):
 def run(clone, function):
     program = f'set -euo pipefail; source {ROOT}/tools/setup/workspace.bash; {function}'
     return subprocess.run(
-        ['bash', '-c', program], check=True, stdout=subprocess.PIPE, text=True,
-        env={'PATH': '/usr/bin:/bin', 'ROOT': str(clone), 'WORKSPACE': str(clone / '.ws')}).stdout
+        ['bash', '-c', program],
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={'PATH': '/usr/bin:/bin', 'ROOT': str(clone), 'WORKSPACE': str(clone / '.ws')},
+    ).stdout
 
 
 def link(clone):
     """Link the packages; return the targets of the links, by their paths in the workspace."""
     run(clone, 'link_packages')
     source = clone / '.ws' / 'src'
-    return {str(path.relative_to(source)): path.readlink()
-            for path in source.rglob('*') if path.is_symlink()}
+    return {
+        str(path.relative_to(source)): path.readlink()
+        for path in source.rglob('*')
+        if path.is_symlink()
+    }
 
 
 def expected(clone):
     return {name: clone / 'companions' / name for name in PACKAGES} | {
-        f'rosbots_description/{name}': clone / name for name in CONFIGURED}
+        f'rosbots_description/{name}': clone / name for name in CONFIGURED
+    }
 
 
 def source_spaces(clone):
@@ -72,8 +80,10 @@ def test_a_moved_clone_is_linked_anew(clone):
 def test_a_hidden_clone_is_linked_in_parts_and_shown_again(clone):
     link(clone)
     (clone / 'CATKIN_IGNORE').touch()
-    parts = {f'rosbots_description/{name}': clone / name
-             for name in ('companions', 'scripts', 'test', 'tools')}
+    parts = {
+        f'rosbots_description/{name}': clone / name
+        for name in ('companions', 'scripts', 'test', 'tools')
+    }
     for _ in range(2):
         assert link(clone) == {name: clone / 'companions' / name for name in PACKAGES} | parts
         assert source_spaces(clone) == [f'{clone}/.ws/src']

@@ -24,8 +24,9 @@ class PlanError(Exception):
     """A sentence about sources that cannot be built."""
 
 
-def build_plan(sources: Path, targets: Mapping[str, Collection[str]]
-               ) -> Iterator[tuple[str, Path, Collection[str]]]:
+def build_plan(
+    sources: Path, targets: Mapping[str, Collection[str]]
+) -> Iterator[tuple[str, Path, Collection[str]]]:
     """Yield name, folder and targets of each package, those that others depend on first.
 
     Raises:
@@ -53,8 +54,15 @@ def _with_dependencies(names: Collection[str], packages: Mapping[str, Package]) 
         if name not in needed and name in packages:
             needed.add(name)
             package = packages[name]
-            rest += [each.name for each in (*package.buildtool_depends, *package.build_depends,
-                                            *package.exec_depends) if each.evaluated_condition]
+            rest += [
+                each.name
+                for each in (
+                    *package.buildtool_depends,
+                    *package.build_depends,
+                    *package.exec_depends,
+                )
+                if each.evaluated_condition
+            ]
     return needed
 
 

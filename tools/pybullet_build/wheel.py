@@ -59,9 +59,25 @@ def download(folder: Path, from_source: bool) -> Path:
     requirement.write_text(f'pybullet=={VERSION} --hash=sha256:{digest}\n', encoding='utf-8')
     kind = '--no-binary' if from_source else '--only-binary'
     subprocess.run(
-        [sys.executable, '-m', 'pip', 'download', '--disable-pip-version-check', '--no-input',
-         '--no-deps', '--no-build-isolation', '--require-hashes', kind, ':all:',
-         '--dest', str(folder), '--requirement', str(requirement)], check=True)
+        [
+            sys.executable,
+            '-m',
+            'pip',
+            'download',
+            '--disable-pip-version-check',
+            '--no-input',
+            '--no-deps',
+            '--no-build-isolation',
+            '--require-hashes',
+            kind,
+            ':all:',
+            '--dest',
+            str(folder),
+            '--requirement',
+            str(requirement),
+        ],
+        check=True,
+    )
     (found,) = folder.glob(f'pybullet-{VERSION}*')
     return found
 
@@ -78,8 +94,9 @@ def module_of_wheel(archive: Path, folder: Path) -> Path:
 def is_source(name: str) -> bool:
     """Tell whether a file of the source distribution is needed."""
     path = PurePosixPath(name)
-    return (len(path.parts) > 2 and path.parts[1] in SOURCE_FOLDERS
-            and path.suffix in SOURCE_SUFFIXES)
+    return (
+        len(path.parts) > 2 and path.parts[1] in SOURCE_FOLDERS and path.suffix in SOURCE_SUFFIXES
+    )
 
 
 def module_of_source(archive: Path, folder: Path) -> Path:
@@ -88,14 +105,30 @@ def module_of_source(archive: Path, folder: Path) -> Path:
         sources.extraction_filter = lambda member, _: member  # its hash was checked
         sources.extractall(folder, [member for member in sources if is_source(member.name)])
     build = folder / 'build'
-    environment = {name: value for name, value in os.environ.items()
-                   if name not in ('CFLAGS', 'CXXFLAGS', 'LDFLAGS', 'CC', 'CXX', 'VERBOSE')}
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ('CFLAGS', 'CXXFLAGS', 'LDFLAGS', 'CC', 'CXX', 'VERBOSE')
+    }
     subprocess.run(
-        ['cmake', '-S', str(HERE), '-B', str(build), '-DCMAKE_BUILD_TYPE=None',
-         f'-DSOURCES={folder}/pybullet-{VERSION}', f'-DPython3_EXECUTABLE={sys.executable}'],
-        check=True, env=environment)
-    subprocess.run(['cmake', '--build', str(build), '--parallel', str(os.cpu_count() or 1)],
-                   check=True, env=environment)
+        [
+            'cmake',
+            '-S',
+            str(HERE),
+            '-B',
+            str(build),
+            '-DCMAKE_BUILD_TYPE=None',
+            f'-DSOURCES={folder}/pybullet-{VERSION}',
+            f'-DPython3_EXECUTABLE={sys.executable}',
+        ],
+        check=True,
+        env=environment,
+    )
+    subprocess.run(
+        ['cmake', '--build', str(build), '--parallel', str(os.cpu_count() or 1)],
+        check=True,
+        env=environment,
+    )
     (module,) = build.glob('pybullet*.so')
     return module
 
@@ -106,10 +139,13 @@ def write_wheel(module: Path, path: Path) -> None:
     about = f'pybullet-{VERSION}.dist-info'
     files = {
         f'pybullet{suffix}': module.read_bytes(),
-        f'{about}/METADATA': (f'Metadata-Version: 2.1\nName: pybullet\nVersion: {VERSION}\n'
-                              'License: zlib\n').encode(),
-        f'{about}/WHEEL': ('Wheel-Version: 1.0\nGenerator: rosbots_description\n'
-                           f'Root-Is-Purelib: false\nTag: {TAG}-{TAG}-{PLATFORM}\n').encode(),
+        f'{about}/METADATA': (
+            f'Metadata-Version: 2.1\nName: pybullet\nVersion: {VERSION}\nLicense: zlib\n'
+        ).encode(),
+        f'{about}/WHEEL': (
+            'Wheel-Version: 1.0\nGenerator: rosbots_description\n'
+            f'Root-Is-Purelib: false\nTag: {TAG}-{TAG}-{PLATFORM}\n'
+        ).encode(),
     }
     record = []
     for name, content in files.items():
@@ -150,8 +186,9 @@ def main() -> int:
     """Make the wheel; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('cache', type=Path, help='folder of wheels')
-    parser.add_argument('--from-source', action='store_true', default=not HAS_WHEEL,
-                        help='even if PyPI has a wheel')
+    parser.add_argument(
+        '--from-source', action='store_true', default=not HAS_WHEEL, help='even if PyPI has a wheel'
+    )
     parser.add_argument('--path', action='store_true', help='only print where the wheel is')
     parser.add_argument('--title', action='store_true', help='only print what making it takes')
     arguments = parser.parse_args()

@@ -42,11 +42,18 @@ PATIENCE = 120  # [s], of a machine that is busy
 
 def main(argv: list[str] | None = None) -> int:
     """Build and test the packages in a folder; return the exit code."""
-    parser = argparse.ArgumentParser(prog='./rosbots check', description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog='./rosbots check',
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument('folder', type=Path, help='with one or more catkin packages')
-    parser.add_argument('launch', nargs='*', metavar='LAUNCH_FILE|NAME:=VALUE',
-                        help='launch files of the folder, and arguments of the file before them')
+    parser.add_argument(
+        'launch',
+        nargs='*',
+        metavar='LAUNCH_FILE|NAME:=VALUE',
+        help='launch files of the folder, and arguments of the file before them',
+    )
     parser.add_argument('--results', type=Path, help='folder for the reports (JUnit)')
     arguments = parser.parse_intermixed_args(argv)
     folder = arguments.folder.resolve()
@@ -64,8 +71,11 @@ def main(argv: list[str] | None = None) -> int:
 def find_packages(folder: Path) -> list[Path]:
     """Return the folders of the packages, except below a file CATKIN_IGNORE."""
     manifests = sorted(folder.rglob('package.xml'))
-    return [path.parent for path in manifests
-            if not any((parent / 'CATKIN_IGNORE').exists() for parent in path.parents)]
+    return [
+        path.parent
+        for path in manifests
+        if not any((parent / 'CATKIN_IGNORE').exists() for parent in path.parents)
+    ]
 
 
 def pair_arguments(words: list[str]) -> list[tuple[str, list[str]]]:
@@ -82,7 +92,10 @@ def pair_arguments(words: list[str]) -> list[tuple[str, list[str]]]:
 
 
 def check(
-    room: Path, folder: Path, packages: list[Path], launches: list[tuple[str, list[str]]],
+    room: Path,
+    folder: Path,
+    packages: list[Path],
+    launches: list[tuple[str, list[str]]],
     results: Path | None,
 ) -> int:
     """Do what `main` says, in the empty folder `room`; return the exit code."""
@@ -93,10 +106,17 @@ def check(
     for sentence in missing_packages(packages):
         print(f'    {sentence}', flush=True)
     python = shutil.which('python3') or sys.executable
-    print(f'==> building {len(packages)} package{"s"[:len(packages) > 1]}', flush=True)
+    print(f'==> building {len(packages)} package{"s"[: len(packages) > 1]}', flush=True)
     if subprocess.run(
-            ['/usr/bin/catkin_make', '-C', str(room), f'-DPYTHON_EXECUTABLE={python}',
-             f'-DPython_EXECUTABLE={python}'], check=False).returncode:
+        [
+            '/usr/bin/catkin_make',
+            '-C',
+            str(room),
+            f'-DPYTHON_EXECUTABLE={python}',
+            f'-DPython_EXECUTABLE={python}',
+        ],
+        check=False,
+    ).returncode:
         return 1
     tests = [write_test(room, folder / path, given) for path, given in launches]
     tests += sorted(folder.rglob('*.test'))
@@ -121,10 +141,14 @@ def missing_packages(packages: list[Path]) -> list[str]:
     sentences = []
     for name in sorted(needed.keys() - known - {''}):
         debian = optional_packages(name)
-        cure = f'install {" ".join(debian)} (requirements/optional.apt)' if debian else \
-            'if it is one of ROS, see "Other packages of ROS" in doc/gazebo_compatibility.md'
+        cure = (
+            f'install {" ".join(debian)} (requirements/optional.apt)'
+            if debian
+            else 'if it is one of ROS, see "Other packages of ROS" in doc/gazebo_compatibility.md'
+        )
         sentences.append(
-            f"{needed[name]} needs '{name}', which is not among the ROS packages here: {cure}")
+            f"{needed[name]} needs '{name}', which is not among the ROS packages here: {cure}"
+        )
     return sentences
 
 
@@ -147,12 +171,21 @@ def write_test(room: Path, launch: Path, given: list[str]) -> Path:
     (package / 'package.xml').write_text(MANIFEST.format(package=PACKAGE), encoding='utf-8')
     shutil.copy(Path(__file__).with_name('simulation_runs.py'), package)
     pairs = (word.partition(':=') for word in given)
-    inside = ''.join(f'<arg name={quoteattr(name)} value={quoteattr(value)}/>'
-                     for name, _, value in pairs)
+    inside = ''.join(
+        f'<arg name={quoteattr(name)} value={quoteattr(value)}/>' for name, _, value in pairs
+    )
     path = package / f'{launch.stem}_launch.test'
-    path.write_text(SIMULATES.format(
-        file=quoteattr(str(launch)), arguments=inside, name=quoteattr(launch.stem),
-        package=PACKAGE, patience=PATIENCE, limit=2 * PATIENCE), encoding='utf-8')
+    path.write_text(
+        SIMULATES.format(
+            file=quoteattr(str(launch)),
+            arguments=inside,
+            name=quoteattr(launch.stem),
+            package=PACKAGE,
+            patience=PATIENCE,
+            limit=2 * PATIENCE,
+        ),
+        encoding='utf-8',
+    )
     return path
 
 
@@ -163,8 +196,9 @@ def run_test(room: Path, path: Path, folder: Path) -> int:
     environment = {**os.environ, 'ROS_TEST_RESULTS_DIR': str(room / 'results')}
     environment.pop('ROS_MASTER_URI', None)
     enter = f'source {shlex.quote(str(room))}/devel/setup.bash && exec rostest "$0"'
-    return subprocess.run(['bash', '-c', enter, str(path)], env=environment,
-                          stdin=subprocess.DEVNULL, check=False).returncode
+    return subprocess.run(
+        ['bash', '-c', enter, str(path)], env=environment, stdin=subprocess.DEVNULL, check=False
+    ).returncode
 
 
 if __name__ == '__main__':

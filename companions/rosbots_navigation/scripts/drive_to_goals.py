@@ -41,11 +41,14 @@ def drive_to(move_base, model_state, x, y, yaw):
     state = move_base.send_goal_and_wait(goal)
     pose = model_state('rosbots', 'world').pose
     q = pose.orientation
-    is_yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y ** 2 + q.z ** 2))
-    print(f'{x:5.2f} {y:5.2f} {yaw:5.2f}: {GoalStatus.to_string(state)} '
-          f'after {(rospy.Time.now() - start).to_sec():.1f} s, '
-          f'{math.hypot(pose.position.x - x, pose.position.y - y):.3f} m and '
-          f'{abs(math.remainder(is_yaw - yaw, math.tau)):.3f} rad from the goal', flush=True)
+    is_yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
+    print(
+        f'{x:5.2f} {y:5.2f} {yaw:5.2f}: {GoalStatus.to_string(state)} '
+        f'after {(rospy.Time.now() - start).to_sec():.1f} s, '
+        f'{math.hypot(pose.position.x - x, pose.position.y - y):.3f} m and '
+        f'{abs(math.remainder(is_yaw - yaw, math.tau)):.3f} rad from the goal',
+        flush=True,
+    )
     return state == GoalStatus.SUCCEEDED
 
 
@@ -54,8 +57,14 @@ def require_master():
     socket.setdefaulttimeout(20.0)
     try:
         rosgraph.Master('/drive_to_goals').getUri()
-    except (OSError, ValueError, HTTPException, xmlrpc.client.Error, ExpatError,
-            rosgraph.MasterException):
+    except (
+        OSError,
+        ValueError,
+        HTTPException,
+        xmlrpc.client.Error,
+        ExpatError,
+        rosgraph.MasterException,
+    ):
         sys.exit(f'drive_to_goals.py: no ROS master answers at {rosgraph.get_master_uri()}')
     finally:
         socket.setdefaulttimeout(None)

@@ -64,8 +64,9 @@ def _require_worker(ray: Any) -> None:  # noqa: ANN401
     try:
         ray.get(ray.remote(num_cpus=0, max_retries=ATTEMPTS - 1)(_attempt).remote())
     except RayError as error:
-        raise ClusterError('the workers of the Ray cluster cannot make runs: '
-                           f'{_lines(error)[-1]}') from None
+        raise ClusterError(
+            f'the workers of the Ray cluster cannot make runs: {_lines(error)[-1]}'
+        ) from None
 
 
 def _simulate(file: ScenarioFile, number: int) -> tuple[dict[str, Any], int]:
@@ -82,7 +83,10 @@ def _attempt() -> int:
 
 
 def _result(
-    ray: Any, file: ScenarioFile, number: int, reference: Any  # noqa: ANN401
+    ray: Any,
+    file: ScenarioFile,
+    number: int,
+    reference: Any,  # noqa: ANN401
 ) -> tuple[dict[str, Any], int]:
     """Return the row of a task that has ended, in whatever way, and its number of attempts."""
     from ray.exceptions import RayError, RayTaskError
@@ -112,9 +116,18 @@ def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
         with _session(ray, address=address, runtime_env={'py_modules': [library]}):
             yield ray
         return
-    with own_folder() as place, private_environment(), _session(
-            ray, num_cpus=workers, include_dashboard=False, _temp_dir=f'{place}/r',
-            object_store_memory=STORE_BYTES, address='local'):
+    with (
+        own_folder() as place,
+        private_environment(),
+        _session(
+            ray,
+            num_cpus=workers,
+            include_dashboard=False,
+            _temp_dir=f'{place}/r',
+            object_store_memory=STORE_BYTES,
+            address='local',
+        ),
+    ):
         yield ray
 
 
@@ -176,9 +189,11 @@ def _ray() -> Any:  # noqa: ANN401  the module
     try:
         return importlib.import_module('ray')
     except ImportError:
-        raise ClusterError("the Python package ray is not installed; ./rosbots setup or "
-                           "pip install '.[ray]' installs it, and with 0 workers the runs are made "
-                           'in one process without it') from None
+        raise ClusterError(
+            'the Python package ray is not installed; ./rosbots setup or '
+            "pip install '.[ray]' installs it, and with 0 workers the runs are made "
+            'in one process without it'
+        ) from None
 
 
 def _lines(error: Exception) -> list[str]:

@@ -6,8 +6,16 @@ from collections.abc import Collection, Mapping
 
 from simpleeval import DEFAULT_OPERATORS, SimpleEval
 
-_FUNCTIONS = {'abs': abs, 'min': min, 'max': max, 'sqrt': math.sqrt, 'hypot': math.hypot,
-              'sin': math.sin, 'cos': math.cos, 'atan2': math.atan2}
+_FUNCTIONS = {
+    'abs': abs,
+    'min': min,
+    'max': max,
+    'sqrt': math.sqrt,
+    'hypot': math.hypot,
+    'sin': math.sin,
+    'cos': math.cos,
+    'atan2': math.atan2,
+}
 _CONSTANTS = {'pi': math.pi}
 MAX_LENGTH = 1000  # [characters]
 
@@ -17,9 +25,11 @@ def _remainder(value: float, divisor: float) -> float:
 
 
 # What could take hours or gigabytes: powers of integers, shifts, texts with widths, methods.
-_OPERATORS = {kind: function for kind, function in DEFAULT_OPERATORS.items()
-              if kind not in (ast.LShift, ast.RShift)
-              } | {ast.Pow: math.pow, ast.Mod: _remainder}
+_OPERATORS = {
+    kind: function
+    for kind, function in DEFAULT_OPERATORS.items()
+    if kind not in (ast.LShift, ast.RShift)
+} | {ast.Pow: math.pow, ast.Mod: _remainder}
 _EXCLUDED = ast.Attribute, ast.JoinedStr, ast.FormattedValue, ast.Subscript
 
 
@@ -34,23 +44,28 @@ class Condition:
         """
         self.text = text
         if len(text) > MAX_LENGTH:
-            raise ValueError(f"the condition '{text[:40]}...' has {len(text)} characters; at most "
-                             f'{MAX_LENGTH} are accepted')
+            raise ValueError(
+                f"the condition '{text[:40]}...' has {len(text)} characters; at most "
+                f'{MAX_LENGTH} are accepted'
+            )
         self._eval = SimpleEval(_OPERATORS, _FUNCTIONS, {})
         for kind in _EXCLUDED:
             self._eval.nodes.pop(kind, None)
         try:
             self._parsed = ast.parse(text.strip(), mode='eval').body
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-            raise ValueError(f"the condition '{text}' is not an expression: "
-                             f'{getattr(error, "msg", error)}') from None
+            raise ValueError(
+                f"the condition '{text}' is not an expression: {getattr(error, 'msg', error)}"
+            ) from None
         nodes = [node for node in ast.walk(self._parsed) if isinstance(node, ast.Name)]
         names = [node.id for node in sorted(nodes, key=lambda node: node.col_offset)]
         self._names = [name for name in dict.fromkeys(names) if name not in _FUNCTIONS]
         unknown = [name for name in self._names if name not in {*known, *_CONSTANTS}]
         if unknown:
-            raise ValueError(f"the condition '{text}' has '{unknown[0]}', which is neither "
-                             f'recorded nor a parameter; there are: {", ".join(known) or "none"}')
+            raise ValueError(
+                f"the condition '{text}' has '{unknown[0]}', which is neither "
+                f'recorded nor a parameter; there are: {", ".join(known) or "none"}'
+            )
 
     def fault(self, row: Mapping[str, object]) -> str:
         """Return why the condition does not hold for a row; '' if it does.

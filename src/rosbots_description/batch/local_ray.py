@@ -17,8 +17,11 @@ _PREFIX, _LOCK = 'rb', 'rosbots.lock'  # of the folder of a Ray that is started 
 _MAX_PLACE = 28  # characters of a folder in which Ray's sockets have names that Linux takes
 # For Ray on this machine alone: only the loopback interface (the switch is named after the systems
 # where it is off by default), only processes that have the token, and no statistics sent.
-_PRIVATE = {'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0', 'RAY_AUTH_MODE': 'token',
-            'RAY_USAGE_STATS_ENABLED': '0'}
+_PRIVATE = {
+    'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0',
+    'RAY_AUTH_MODE': 'token',
+    'RAY_USAGE_STATS_ENABLED': '0',
+}
 
 
 class ClusterError(SimError):
@@ -50,7 +53,8 @@ def _read_environment() -> None:
 
     ray_constants: Any = constants  # untyped, as the next
     ray_constants.ENABLE_RAY_CLUSTER = ray_constants.env_bool(
-        ray_constants.ENABLE_RAY_CLUSTERS_ENV_VAR, True)
+        ray_constants.ENABLE_RAY_CLUSTERS_ENV_VAR, True
+    )
     inner: Any = _raylet
     inner.Config.initialize('')
     inner.AuthenticationTokenLoader.instance().reset_cache()

@@ -16,8 +16,11 @@ _MAX_INT = 2**63  # of a column
 _WHOLE = re.compile(r'\$(?:(\w+)|\{(\w+)\})')
 # Distributions: methods of NumPy's Generator, with their arguments in that order.
 _DISTRIBUTIONS = {
-    'uniform': 'low, high', 'normal': 'mean, standard deviation', 'exponential': 'scale',
-    'integers': 'low, high (excluded)', 'lognormal': 'mean, sigma',
+    'uniform': 'low, high',
+    'normal': 'mean, standard deviation',
+    'exponential': 'scale',
+    'integers': 'low, high (excluded)',
+    'lognormal': 'mean, sigma',
     'triangular': 'left, mode, right',
 }
 
@@ -49,8 +52,9 @@ class Parameters:
             raise ValueError(f'parameters takes a mapping from names to values, not {content!r}')
         for what, number, least in (('seed', seed, 0), ('repeat', repeat, 1)):
             if not isinstance(number, int) or isinstance(number, bool) or number < least:
-                raise ValueError(f'{what} is {number!r}; it takes a whole number of at least '
-                                 f'{least}')
+                raise ValueError(
+                    f'{what} is {number!r}; it takes a whole number of at least {least}'
+                )
         self.seed, self.content = seed, (dict(content), seed, repeat)
         self.names = list(content)
         self._grids: dict[str, list[Value]] = {}
@@ -60,13 +64,15 @@ class Parameters:
         self._types: dict[str, set[type]] = {}
         for name, spec in content.items():
             if not (isinstance(name, str) and name.isidentifier()):
-                raise ValueError(f'{name!r} cannot be the name of a parameter; use letters, '
-                                 'digits and _')
+                raise ValueError(
+                    f'{name!r} cannot be the name of a parameter; use letters, digits and _'
+                )
             self._add(name, spec)
         lengths = {len(values) for values in self._lists.values()}
         if len(lengths) > 1:
-            raise ValueError('lists of parameters are of equal length; these are not: '
-                             + ', '.join(self._lists))
+            raise ValueError(
+                'lists of parameters are of equal length; these are not: ' + ', '.join(self._lists)
+            )
         # The last index changes first: repetition, then place in the lists, then in the grids.
         self._shape = (*map(len, self._grids.values()), max(lengths, default=1), repeat)
         self.runs = math.prod(self._shape)
@@ -79,12 +85,16 @@ class Parameters:
             return
         kinds = ', '.join(('grid', 'list', 'choice', *_DISTRIBUTIONS))
         if not (isinstance(spec, Mapping) and len(spec) == 1):
-            raise ValueError(f"the parameter '{name}' takes a number, a text, true, false, or one "
-                             f'of these with its values: {kinds}')
-        (kind, values), = spec.items()
+            raise ValueError(
+                f"the parameter '{name}' takes a number, a text, true, false, or one "
+                f'of these with its values: {kinds}'
+            )
+        ((kind, values),) = spec.items()
         if not (isinstance(values, list | tuple) and values and all(map(_is_value, values))):
-            raise ValueError(f"{kind} of the parameter '{name}' takes a list of values; they are "
-                             'finite numbers, texts, true or false')
+            raise ValueError(
+                f"{kind} of the parameter '{name}' takes a list of values; they are "
+                'finite numbers, texts, true or false'
+            )
         self._types[name] = set(map(type, values))
         if kind == 'grid':
             self._grids[name] = list(values)
@@ -135,8 +145,9 @@ def _distribution(
     try:
         draw(np.random.default_rng(0))
     except (TypeError, ValueError, OverflowError, MemoryError) as error:
-        raise ValueError(f"{kind} of the parameter '{name}' takes {_DISTRIBUTIONS[kind]}: "
-                         f'{error}') from None
+        raise ValueError(
+            f"{kind} of the parameter '{name}' takes {_DISTRIBUTIONS[kind]}: {error}"
+        ) from None
     return draw
 
 
@@ -159,8 +170,10 @@ def substitute(content: Any, values: Mapping[str, Value]) -> Any:  # noqa: ANN40
         return values[whole[1] or whole[2]] if whole else Template(content).substitute(values)
     except KeyError as error:
         known = ', '.join(values) or 'none'
-        raise ValueError(f'there is no parameter {error}; the parameters: {known}. $$ stands for '
-                         'a dollar sign') from None
+        raise ValueError(
+            f'there is no parameter {error}; the parameters: {known}. $$ stands for a dollar sign'
+        ) from None
     except ValueError:
-        raise ValueError(f'{content[:60]!r} has a $ without the name of a parameter; $$ stands '
-                         'for a dollar sign') from None
+        raise ValueError(
+            f'{content[:60]!r} has a $ without the name of a parameter; $$ stands for a dollar sign'
+        ) from None

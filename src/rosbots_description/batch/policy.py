@@ -33,8 +33,9 @@ def load_policy(address: str, folder: str, run: Run) -> Policy:
     """
     place, colon, name = address.rpartition(':')
     if not (colon and place and name):
-        raise PolicyError(f"'{address}' is not a policy; it takes module:function or "
-                          'file.py:function')
+        raise PolicyError(
+            f"'{address}' is not a policy; it takes module:function or file.py:function"
+        )
     try:
         if place.endswith('.py'):
             path = os.path.join(folder, place)
@@ -48,21 +49,22 @@ def load_policy(address: str, folder: str, run: Run) -> Policy:
     except Exception as error:  # whatever a user's module raises
         raise PolicyError(f"the policy '{address}' cannot be loaded: {in_words(error)}") from error
     if not callable(getattr(module, name, None)):
-        raise PolicyError(f"the policy '{address}' cannot be loaded: {place} has no function "
-                          f"'{name}'")
+        raise PolicyError(
+            f"the policy '{address}' cannot be loaded: {place} has no function '{name}'"
+        )
     try:
         policy: Policy = getattr(module, name)(run)
     except Exception as error:
         raise PolicyError(f"the policy '{address}' raised {in_words(error)}") from error
     if not callable(policy):
-        raise PolicyError(f"the policy '{address}' returned {type(policy).__name__}; it returns "
-                          'a function of time and readings')
+        raise PolicyError(
+            f"the policy '{address}' returned {type(policy).__name__}; it returns "
+            'a function of time and readings'
+        )
     return policy
 
 
-def commands_of(
-    policy: Policy, address: str, time: float, readings: Mapping[str, Any]
-) -> Commands:
+def commands_of(policy: Policy, address: str, time: float, readings: Mapping[str, Any]) -> Commands:
     """Return the commands of a policy at a time [s].
 
     Raises:
@@ -81,6 +83,9 @@ def commands_of(
 def in_words(error: BaseException) -> str:
     """Return an exception's type and text, and the line of a user's file that raised it, if any."""
     _, *files = ((frame.f_code.co_filename, line) for frame, line in walk_tb(error.__traceback__))
-    lines = [f' ({os.path.basename(file)}, line {line})' for file, line in files
-             if not file.startswith(('<', _STDLIB)) and '-packages' not in file]
+    lines = [
+        f' ({os.path.basename(file)}, line {line})'
+        for file, line in files
+        if not file.startswith(('<', _STDLIB)) and '-packages' not in file
+    ]
     return f'{type(error).__name__}: {error}{lines[-1] if lines else ""}'

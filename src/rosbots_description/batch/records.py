@@ -12,7 +12,11 @@ STATISTICS = 'end', 'min', 'max', 'mean'
 _AXES = 'x', 'y', 'z', 'w'
 _ANGLES = 'roll', 'pitch', 'yaw'
 _OF_ALL: dict[str, Callable[[Any], Any]] = {
-    'min': np.min, 'max': np.max, 'mean': np.mean, 'count': np.size}
+    'min': np.min,
+    'max': np.max,
+    'mean': np.mean,
+    'count': np.size,
+}
 
 
 class JointReading(NamedTuple):
@@ -37,8 +41,10 @@ def value_at(reading: object, path: str) -> float:
         if name.isdecimal() and _is_sequence(part) and int(name) < len(part):
             part = part[int(name)]
         elif name not in names:
-            raise ValueError(f"'{path}' is not in a {type(reading).__name__}: there is no "
-                             f"'{name}' in it, but {', '.join(names) or 'only a number'}")
+            raise ValueError(
+                f"'{path}' is not in a {type(reading).__name__}: there is no "
+                f"'{name}' in it, but {', '.join(names) or 'only a number'}"
+            )
         elif name in getattr(part, '_fields', ()):
             part = getattr(part, name)
         elif name in _ANGLES:
@@ -61,7 +67,7 @@ def _names(part: Any) -> tuple[str, ...]:  # noqa: ANN401  any reading
         return tuple(part._fields)
     if not _is_sequence(part):
         return ()
-    axes = _AXES[:len(part)] if len(part) in (3, 4) else ()
+    axes = _AXES[: len(part)] if len(part) in (3, 4) else ()
     return (*axes, *(_ANGLES if len(part) == 4 else ()), *_OF_ALL)
 
 
@@ -83,8 +89,10 @@ class Statistics:
     def columns(self, name: str) -> dict[str, float | None]:
         """Return them as `name_end` and so on; None without any number."""
         numbers = (self._end, self._min, self._max, self._sum / max(1, self._count))
-        return {f'{name}_{statistic}': number if self._count else None
-                for statistic, number in zip(STATISTICS, numbers, strict=True)}
+        return {
+            f'{name}_{statistic}': number if self._count else None
+            for statistic, number in zip(STATISTICS, numbers, strict=True)
+        }
 
 
 def check_vectors(message: Mapping[str, Any], fields: tuple[str, ...]) -> list[tuple[float, ...]]:
@@ -94,8 +102,10 @@ def check_vectors(message: Mapping[str, Any], fields: tuple[str, ...]) -> list[t
         ValueError: it has other fields, or a number is not finite.
     """
     if not isinstance(message, Mapping) or set(message) - set(fields):
-        raise ValueError(f'the message has the fields {" and ".join(fields)}, each with x, y and '
-                         f'z; it is {message!r}')
+        raise ValueError(
+            f'the message has the fields {" and ".join(fields)}, each with x, y and '
+            f'z; it is {message!r}'
+        )
     vectors = []
     for field in fields:
         vector = message.get(field) or {}

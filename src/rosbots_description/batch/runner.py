@@ -67,8 +67,10 @@ def run(
     try:
         from .table import Table
     except ImportError as error:
-        raise ScenarioError(f'no rows without the Python package {error.name}; ./rosbots setup or '
-                            "pip install '.[ray]' installs it") from None
+        raise ScenarioError(
+            f'no rows without the Python package {error.name}; ./rosbots setup or '
+            "pip install '.[ray]' installs it"
+        ) from None
     wanted = range(file.parameters.runs) if only is None else sorted(set(only))
     if wanted and not 0 <= wanted[0] <= wanted[-1] < file.parameters.runs:
         raise ScenarioError(f'the runs have the numbers 0 to {file.parameters.runs - 1}')
@@ -107,7 +109,9 @@ def _rows(
 
 
 def _collect(
-    table: 'Table', rows: Iterable[tuple[dict[str, Any], int]], total: int,
+    table: 'Table',
+    rows: Iterable[tuple[dict[str, Any], int]],
+    total: int,
     progress: Progress | None,
 ) -> int:
     """Add the rows to the table, whatever ends this; return the number of repeated runs."""

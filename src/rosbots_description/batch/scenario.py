@@ -53,8 +53,10 @@ class ModelEntry(Struct, frozen=True, forbid_unknown_fields=True):
 
     def xacro_arguments(self) -> dict[str, str]:
         """Return the arguments as xacro takes them."""
-        return {name: str(value).lower() if isinstance(value, bool) else str(value)
-                for name, value in self.arguments.items()}
+        return {
+            name: str(value).lower() if isinstance(value, bool) else str(value)
+            for name, value in self.arguments.items()
+        }
 
 
 class CommandEntry(Struct, frozen=True, forbid_unknown_fields=True):
@@ -77,8 +79,9 @@ class RecordEntry(Struct, frozen=True, forbid_unknown_fields=True):
     def check(self, name: str) -> None:
         """Raise a `ScenarioError` for what its types leave open; `name` is the record's."""
         if not name.isidentifier():
-            raise ScenarioError(f"'{name}' cannot be the name of a record; use letters, digits "
-                                'and _')
+            raise ScenarioError(
+                f"'{name}' cannot be the name of a record; use letters, digits and _"
+            )
         if bool(self.topic) == bool(self.model):
             raise ScenarioError(f"record '{name}' takes either topic or model")
         if (self.link or self.joint) and (self.topic or (self.link and self.joint)):
@@ -108,19 +111,26 @@ class Scenario(Struct, frozen=True, forbid_unknown_fields=True):
             record.check(name)
         for index, command in enumerate(self.commands):
             if command.at >= self.duration:
-                raise ScenarioError(f'commands[{index}] is at {command.at:g} s; the run ends at '
-                                    f'{self.duration:g} s')
+                raise ScenarioError(
+                    f'commands[{index}] is at {command.at:g} s; the run ends at {self.duration:g} s'
+                )
         if not all(map(math.isfinite, (self.duration, self.period))):
             raise ScenarioError('duration and period take finite numbers of seconds')
         if self.duration > MAX_PERIODS * max(self.period, MIN_PERIOD):
-            raise ScenarioError(f'the duration of {self.duration:g} s has more than {MAX_PERIODS} '
-                                f'periods of {self.period:g} s; take a longer period')
+            raise ScenarioError(
+                f'the duration of {self.duration:g} s has more than {MAX_PERIODS} '
+                f'periods of {self.period:g} s; take a longer period'
+            )
 
     @property
     def columns(self) -> list[str]:
         """Return the columns of a row that hold what was recorded."""
-        return [f'{name}_{statistic}' for name, record in self.record.items() if record.value
-                for statistic in STATISTICS]
+        return [
+            f'{name}_{statistic}'
+            for name, record in self.record.items()
+            if record.value
+            for statistic in STATISTICS
+        ]
 
 
 class ScenarioFile:
@@ -135,8 +145,9 @@ class ScenarioFile:
         self.folder = os.path.abspath(folder)
         rest = dict(document)
         try:
-            self.parameters = Parameters(rest.pop('parameters', None) or {}, rest.pop('seed', 0),
-                                         rest.pop('repeat', 1))
+            self.parameters = Parameters(
+                rest.pop('parameters', None) or {}, rest.pop('seed', 0), rest.pop('repeat', 1)
+            )
         except ValueError as error:
             raise ScenarioError(str(error)) from None
         self._rest = rest
@@ -161,8 +172,9 @@ class ScenarioFile:
         except (OSError, ValueError) as error:
             raise ScenarioError(f'{path} cannot be read: {one_line(str(error))}') from None
         if not isinstance(document, dict):
-            raise ScenarioError(f'{path} is not a scenario; a scenario is a YAML mapping with at '
-                                'least a duration')
+            raise ScenarioError(
+                f'{path} is not a scenario; a scenario is a YAML mapping with at least a duration'
+            )
         given = document.get('parameters') or {}
         if parameters and isinstance(given, dict):
             document['parameters'] = {**given, **parameters}
@@ -194,8 +206,10 @@ class ScenarioFile:
             ScenarioError: one of them is not an expression over its row.
         """
         try:
-            return [Condition(text, [*self.columns, *self.parameters.names])
-                    for text in scenario.conditions]
+            return [
+                Condition(text, [*self.columns, *self.parameters.names])
+                for text in scenario.conditions
+            ]
         except ValueError as error:
             raise ScenarioError(str(error)) from None
 

@@ -44,8 +44,14 @@ def simulate(file: ScenarioFile, number: int) -> dict[str, Any]:
 
 def empty_row(file: ScenarioFile, run: Run) -> dict[str, Any]:
     """Return the row of a run of which nothing is known but its parameters."""
-    return {'run': run.number, 'seed': run.seed, 'outcome': ERROR, 'reason': '',
-            **run.parameters, **dict.fromkeys(file.columns)}
+    return {
+        'run': run.number,
+        'seed': run.seed,
+        'outcome': ERROR,
+        'reason': '',
+        **run.parameters,
+        **dict.fromkeys(file.columns),
+    }
 
 
 class _Simulation:
@@ -53,8 +59,9 @@ class _Simulation:
 
     def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
         self._file, self._run, self._scenario = file, run, scenario
-        self._statistics = {name: Statistics() for name, record in scenario.record.items()
-                            if record.value}
+        self._statistics = {
+            name: Statistics() for name, record in scenario.record.items() if record.value
+        }
         self._readings: dict[str, Any] = dict.fromkeys(scenario.record)
         self._fault: ScenarioError | None = None
         self._models: dict[str, tuple[Any, RecordEntry]] = {}  # records of what is in the world
@@ -64,8 +71,12 @@ class _Simulation:
         scenario, locate = self._scenario, self._file.locate
         with World.from_file(locate(scenario.world), seed=self._run.seed) as world:
             for model in scenario.models:
-                world.spawn(model.text or locate(model.file), model.name, model.pose.pose(),
-                            arguments=model.xacro_arguments())
+                world.spawn(
+                    model.text or locate(model.file),
+                    model.name,
+                    model.pose.pose(),
+                    arguments=model.xacro_arguments(),
+                )
             self._topics = Topics(world)
             for name, record in scenario.record.items():
                 self._open(world, name, record)
@@ -108,8 +119,9 @@ class _Simulation:
         """Run to the end, with commands and records in between; the policy acts first."""
         scenario, begin = self._scenario, world.clock.steps  # not 0 in a world that was saved
         steps = _StepsOf(scenario, world)
-        policy = load_policy(scenario.policy, self._file.folder, self._run) \
-            if scenario.policy else None
+        policy = (
+            load_policy(scenario.policy, self._file.folder, self._run) if scenario.policy else None
+        )
         for step in steps.all:
             world.run(begin + step - world.clock.steps)
             if self._fault:
@@ -140,8 +152,11 @@ class _StepsOf:
         size = world.physics.step_size
         period = max(scenario.period, size)
         self.end = max(1, round(scenario.duration / size))
-        self.ticks = {tick for index in range(math.ceil(scenario.duration / period))
-                      if (tick := round(index * period / size)) < self.end}
+        self.ticks = {
+            tick
+            for index in range(math.ceil(scenario.duration / period))
+            if (tick := round(index * period / size)) < self.end
+        }
         self.commands: dict[int, list[int]] = {}  # indices of the commands
         for index, command in sorted(enumerate(scenario.commands), key=lambda one: one[1].at):
             self.commands.setdefault(round(command.at / size), []).append(index)

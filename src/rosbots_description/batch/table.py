@@ -35,12 +35,17 @@ class Table:
         """
         names = file.parameters.names
         self._text = {name for name in names if file.parameters.type_of(name) is str}
-        self.schema = pa.schema([
-            ('run', pa.int64()), ('seed', pa.int64()), ('outcome', pa.string()),
-            ('reason', pa.string()),
-            *((name, _TYPES[file.parameters.type_of(name)]) for name in names),
-            *((name, pa.float64()) for name in file.columns),
-        ], {_KEY: file.fingerprint.encode()})
+        self.schema = pa.schema(
+            [
+                ('run', pa.int64()),
+                ('seed', pa.int64()),
+                ('outcome', pa.string()),
+                ('reason', pa.string()),
+                *((name, _TYPES[file.parameters.type_of(name)]) for name in names),
+                *((name, pa.float64()) for name in file.columns),
+            ],
+            {_KEY: file.fingerprint.encode()},
+        )
         self.rows: dict[int, dict[str, Any]] = {}
         self.fault = ''  # why rows could not be written
         self._waiting: list[dict[str, Any]] = []
@@ -59,8 +64,10 @@ class Table:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             (folder / PARTS).mkdir(exist_ok=True)
         except BlockingIOError:
-            raise ScenarioError(f'{folder} is in use by another batch; name another folder, or '
-                                'wait until that one ends') from None
+            raise ScenarioError(
+                f'{folder} is in use by another batch; name another folder, or '
+                'wait until that one ends'
+            ) from None
         except OSError as error:
             raise ScenarioError(f'rows cannot be written to {folder}: {_why(error)}') from None
 
@@ -70,8 +77,9 @@ class Table:
 
     def _load(self, folder: Path) -> None:
         parts = sorted((folder / PARTS).glob('*.parquet'))
-        self._parts = 1 + max((int(part.stem) for part in parts if part.stem.isdecimal()),
-                              default=-1)
+        self._parts = 1 + max(
+            (int(part.stem) for part in parts if part.stem.isdecimal()), default=-1
+        )
         for part in (folder / FINAL, *parts):
             try:
                 found = parquet.read_table(part)
@@ -80,8 +88,10 @@ class Table:
             except OSError as error:
                 raise ScenarioError(f'{part} cannot be read: {_why(error)}') from None
             if (found.schema.metadata or {}).get(_KEY) != self.schema.metadata[_KEY]:
-                raise ScenarioError(f'{folder} holds the rows of another scenario; name '
-                                    'another folder, or remove it')
+                raise ScenarioError(
+                    f'{folder} holds the rows of another scenario; name '
+                    'another folder, or remove it'
+                )
             rows: list[Any] = found.to_pylist()
             self.rows |= {row['run']: row for row in rows}
 
@@ -89,7 +99,8 @@ class Table:
         """Add the row of a run."""
         made: dict[str, Any] = {
             name: str(value) if name in self._text and value is not None else value
-            for name, value in row.items()}
+            for name, value in row.items()
+        }
         self.rows[made['run']] = made
         self._waiting.append(made)
 

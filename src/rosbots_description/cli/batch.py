@@ -34,17 +34,26 @@ def _count(text: str) -> int:
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the options."""
     made = argparse.ArgumentParser(
-        prog='./rosbots batch', description='Make all runs of a scenario; one row each in Parquet.',
-        epilog='The exit code is 0 if all runs passed, 1 if not, 2 if none could be made.')
+        prog='./rosbots batch',
+        description='Make all runs of a scenario; one row each in Parquet.',
+        epilog='The exit code is 0 if all runs passed, 1 if not, 2 if none could be made.',
+    )
     made.add_argument('scenario', metavar='SCENARIO.yaml', help='see doc/batch.md')
     where = made.add_mutually_exclusive_group()
-    where.add_argument('--workers', type=_count, metavar='N',
-                       help='processes on this machine (default: one per processor); 0 makes the '
-                            'runs in this one, without Ray')
+    where.add_argument(
+        '--workers',
+        type=_count,
+        metavar='N',
+        help='processes on this machine (default: one per processor); 0 makes the '
+        'runs in this one, without Ray',
+    )
     where.add_argument('--address', help="of a Ray cluster, or 'auto' for the one of this machine")
-    made.add_argument('--output', type=Path, metavar='DIR',
-                      help=f'for rows.parquet (default: {FOLDER}/SCENARIO); rows that are there '
-                           'are kept')
+    made.add_argument(
+        '--output',
+        type=Path,
+        metavar='DIR',
+        help=f'for rows.parquet (default: {FOLDER}/SCENARIO); rows that are there are kept',
+    )
     return made
 
 
@@ -56,8 +65,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         from ..batch import ClusterError, ScenarioError, run
     except ImportError as error:
-        return _fail(f"the Python package {error.name} is not installed; ./rosbots setup or "
-                     "pip install '.[ray]' installs it")
+        return _fail(
+            f'the Python package {error.name} is not installed; ./rosbots setup or '
+            "pip install '.[ray]' installs it"
+        )
 
     def count(rows: int, total: int, repeated: int) -> None:
         _done[:] = rows.to_bytes(len(_done), 'little')
@@ -65,8 +76,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     try:
         with _bar() as show:
-            result = run(options.scenario, workers=options.workers, address=options.address,
-                         output=output, progress=count)
+            result = run(
+                options.scenario,
+                workers=options.workers,
+                address=options.address,
+                output=output,
+                progress=count,
+            )
     except (ScenarioError, ClusterError) as error:
         return _fail(str(error))
     except (KeyboardInterrupt, SystemExit):
@@ -79,15 +95,19 @@ def _output(options: argparse.Namespace) -> Path:
 
 
 def _interrupted(output: Path) -> int:
-    _say(f'interrupted; {int.from_bytes(_done[:], "little")} rows are in {output}, and the same '
-         'command makes the others')
+    _say(
+        f'interrupted; {int.from_bytes(_done[:], "little")} rows are in {output}, and the same '
+        'command makes the others'
+    )
     return INTERRUPTED
 
 
 def _report(result: Result, output: Path) -> int:
     outcomes = result.outcomes
-    print(f'{result.table.num_rows} runs: {outcomes["passed"]} passed, {outcomes["failed"]} failed,'
-          f' {outcomes["error"]} with an error')
+    print(
+        f'{result.table.num_rows} runs: {outcomes["passed"]} passed, {outcomes["failed"]} failed,'
+        f' {outcomes["error"]} with an error'
+    )
     if result.repeated:
         print(f'{result.repeated} were repeated, since their workers were lost')
     rows = result.table.select(['run', 'outcome', 'reason']).to_pylist()
@@ -113,8 +133,12 @@ def _bar() -> Iterator[Progress]:
     from rich import progress
     from rich.console import Console
 
-    columns = (progress.TextColumn('{task.description}'), progress.BarColumn(),
-               progress.MofNCompleteColumn(), progress.TimeRemainingColumn())
+    columns = (
+        progress.TextColumn('{task.description}'),
+        progress.BarColumn(),
+        progress.MofNCompleteColumn(),
+        progress.TimeRemainingColumn(),
+    )
     with progress.Progress(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task('runs', total=None)
 
@@ -151,15 +175,20 @@ def _ended_by_ray(interrupted: bool) -> int:
     remove_left_folders()
     if interrupted:
         return _interrupted(_output(parser().parse_args()))
-    return _fail('ended by Ray, of which a process has died, or by a signal; the rows so far are '
-                 'kept, and the same command makes the others', NOT_PASSED)
+    return _fail(
+        'ended by Ray, of which a process has died, or by a signal; the rows so far are '
+        'kept, and the same command makes the others',
+        NOT_PASSED,
+    )
 
 
 @contextlib.contextmanager
 def _own_stderr() -> Iterator[None]:
     """Keep standard error for this program: Ray's core prints what it does about dead processes."""
-    with os.fdopen(os.dup(2), 'w', encoding='utf-8', errors='backslashreplace',
-                   buffering=1) as own, contextlib.redirect_stderr(own):
+    with (
+        os.fdopen(os.dup(2), 'w', encoding='utf-8', errors='backslashreplace', buffering=1) as own,
+        contextlib.redirect_stderr(own),
+    ):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 2)
         os.close(nowhere)

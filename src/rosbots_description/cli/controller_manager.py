@@ -39,31 +39,49 @@ _UNSPAWNER_USAGE = """./unspawner name1 name2 name3
 def spawner_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line of spawner."""
     parser = argparse.ArgumentParser(prog='spawner', description='Controller spawner')
-    parser.add_argument('--stopped', action='store_true',
-                        help='loads controllers, but does not start them')
-    parser.add_argument('--wait-for', metavar='topic',
-                        help='waits for "True" on a topic (Bool) before it loads controllers')
-    parser.add_argument('--namespace', metavar='ns',
-                        help='namespace of the controller_manager services')
-    parser.add_argument('--timeout', metavar='T', type=float, default=30.0,
-                        help='how long to wait for each service at the start [s] (default: 30); '
-                        '0 or less: as long as it takes')
+    parser.add_argument(
+        '--stopped', action='store_true', help='loads controllers, but does not start them'
+    )
+    parser.add_argument(
+        '--wait-for',
+        metavar='topic',
+        help='waits for "True" on a topic (Bool) before it loads controllers',
+    )
+    parser.add_argument(
+        '--namespace', metavar='ns', help='namespace of the controller_manager services'
+    )
+    parser.add_argument(
+        '--timeout',
+        metavar='T',
+        type=float,
+        default=30.0,
+        help='how long to wait for each service at the start [s] (default: 30); '
+        '0 or less: as long as it takes',
+    )
     parser.add_argument('--no-timeout', action='store_true', help='the same as --timeout 0')
     parser.add_argument('--shutdown-timeout', help='accepted, without effect')
-    parser.add_argument('controllers', metavar='controller', nargs='+',
-                        help='controllers to load, or files of parameters that name them')
+    parser.add_argument(
+        'controllers',
+        metavar='controller',
+        nargs='+',
+        help='controllers to load, or files of parameters that name them',
+    )
     return parser
 
 
 def group_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line of controller_group."""
     parser = argparse.ArgumentParser(
-        prog='controller_group', description='Controller Group Utility')
+        prog='controller_group', description='Controller Group Utility'
+    )
     commands = parser.add_subparsers(
-        title='Commands', metavar='COMMAND', dest='command', required=True)
+        title='Commands', metavar='COMMAND', dest='command', required=True
+    )
     commands.add_parser('list', help='list available groups')
-    for name, text in (('spawn', 'load and start the controllers of a group'),
-                       ('switch', 'stop the other groups, and start this one')):
+    for name, text in (
+        ('spawn', 'load and start the controllers of a group'),
+        ('switch', 'stop the other groups, and start this one'),
+    ):
         commands.add_parser(name, help=text).add_argument('group', help='name of the group')
     return parser
 
@@ -74,6 +92,7 @@ def spawner(arguments: Sequence[str] | None = None) -> int:
     options = spawner_parser().parse_args(_own(arguments))
     # Imported late: help and wrong usage are fast, and need no ROS.
     from ..ros_api.controller_programs import spawner as program
+
     return _reported('spawner', lambda: program.run(options, arguments))
 
 
@@ -85,6 +104,7 @@ def unspawner(arguments: Sequence[str] | None = None) -> int:
         print(_UNSPAWNER_USAGE)
         return FAILED
     from ..ros_api.controller_programs import unspawner as program
+
     return _reported('unspawner', lambda: program.run(names, arguments))
 
 
@@ -99,6 +119,7 @@ def manager(arguments: Sequence[str] | None = None) -> int:
 
     def act() -> None:
         from ..ros_api.controller_programs import calls
+
         if command == 'list':
             calls.list_controllers()
         elif command == 'list-types':
@@ -120,6 +141,7 @@ def group(arguments: Sequence[str] | None = None) -> int:
 
     def act() -> None:
         from ..ros_api.controller_programs import groups
+
         if options.command == 'list':
             groups.list_groups()
         else:
@@ -130,12 +152,14 @@ def group(arguments: Sequence[str] | None = None) -> int:
 
 def _run(node: str, arguments: Sequence[str], act: Callable[[], None]) -> int:
     from ..ros_api.controller_programs import program
+
     return _reported(node, lambda: program.run(node, arguments, act))
 
 
 def _reported(name: str, run: Callable[[], int]) -> int:
     """Return `run()`; print that ROS_MASTER_URI is wrong as one sentence."""
     from ..ros_api.transport import AddressError
+
     try:
         return run()
     except AddressError as error:

@@ -53,10 +53,18 @@ class DemoError(RuntimeError):
 def main(argv: list[str] | None = None) -> int:
     """Run the demo; return the exit code: 0 done, 1 a step failed, 130 interrupted."""
     parser = argparse.ArgumentParser(prog='./rosbots demo', description=__doc__)
-    parser.add_argument('--output', type=Path, default=Path('demo_output'), metavar='FOLDER',
-                        help='where pictures and logs go; default: %(default)s')
-    parser.add_argument('--web', action='store_true',
-                        help='show it in a browser as well; in a terminal it stays until Enter')
+    parser.add_argument(
+        '--output',
+        type=Path,
+        default=Path('demo_output'),
+        metavar='FOLDER',
+        help='where pictures and logs go; default: %(default)s',
+    )
+    parser.add_argument(
+        '--web',
+        action='store_true',
+        help='show it in a browser as well; in a terminal it stays until Enter',
+    )
     arguments = parser.parse_args(argv)
     # SIGTERM and SIGHUP end the demo and all its processes, as Ctrl-C does
     for number in (signal.SIGTERM, signal.SIGHUP):
@@ -89,12 +97,23 @@ def _run(folder: Path, web: bool) -> None:
     # Imported late, so that --help is fast.
     from ..ros_api.clients.demo import DemoClient
     from .demo_plot import save_picture
+
     with ExitStack() as stack:
         _say('starting the simulator with an empty world')
-        server = stack.enter_context(Launched(
-            ['gazebo_ros', 'empty_world.launch', 'gui:=false', 'server_required:=true',
-             f'web:={str(web).lower()}', 'web_port:=0'],
-            folder / 'simulator.log', environment))
+        server = stack.enter_context(
+            Launched(
+                [
+                    'gazebo_ros',
+                    'empty_world.launch',
+                    'gui:=false',
+                    'server_required:=true',
+                    f'web:={str(web).lower()}',
+                    'web_port:=0',
+                ],
+                folder / 'simulator.log',
+                environment,
+            )
+        )
         try:
             client = DemoClient(_MODEL, _START, lambda: server.running)
         except TimeoutError as error:
@@ -104,8 +123,10 @@ def _run(folder: Path, web: bool) -> None:
             _say(window_line(server.log))
         _say('spawning the robot')
         _spawn(client, folder / 'spawn.log', environment)
-        _say(f'driving it for {sum(segment.duration for segment in DRIVE):g} s: '
-             + ', '.join(segment.name for segment in DRIVE))
+        _say(
+            f'driving it for {sum(segment.duration for segment in DRIVE):g} s: '
+            + ', '.join(segment.name for segment in DRIVE)
+        )
         rows = _drive(client, folder)
         _say("taking its picture with the simulator's own camera")
         save_picture(folder / ROBOT_PICTURE, client.look_at_robot())
@@ -141,16 +162,21 @@ def _private_environment(folder: Path) -> dict[str, str]:
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
         port = probe.getsockname()[1]
-    environment = {name: value for name, value in os.environ.items()
-                   if name not in ('ROS_IP', 'ROS_NAMESPACE')}
-    environment.update(ROS_MASTER_URI=f'http://localhost:{port}', ROS_HOSTNAME='localhost',
-                       ROS_LOG_DIR=str(folder.resolve() / 'ros_log'))
+    environment = {
+        name: value for name, value in os.environ.items() if name not in ('ROS_IP', 'ROS_NAMESPACE')
+    }
+    environment.update(
+        ROS_MASTER_URI=f'http://localhost:{port}',
+        ROS_HOSTNAME='localhost',
+        ROS_LOG_DIR=str(folder.resolve() / 'ros_log'),
+    )
     return environment
 
 
 def _spawn(client: DemoClient, log: Path, environment: Mapping[str, str]) -> None:
     """Spawn the robot by its launch file, and wait until it is on the ground and subscribes."""
     from ..ros_api.clients.demo import wait_until
+
     with Launched(['rosbots_description', 'spawn.launch'], log, environment) as spawn:
         done = spawn.wait(_SPAWN)
     if not done or not client.present():
@@ -162,17 +188,20 @@ def _spawn(client: DemoClient, log: Path, environment: Mapping[str, str]) -> Non
 def _drive(client: DemoClient, folder: Path) -> list[Row]:
     """Drive all segments, write the picture and return the measurements."""
     from .demo_plot import plot_path
+
     rows, path, odometry = [], [], []
     for segment in DRIVE:
         truth, reported = client.drive(segment.speed, segment.turn_rate, segment.duration)
         path.append((segment, truth))
         odometry += reported
         try:
-            rows.append(Row(segment, steady_motion(reported), steady_motion(truth),
-                            real_time_factor(truth)))
+            rows.append(
+                Row(segment, steady_motion(reported), steady_motion(truth), real_time_factor(truth))
+            )
         except (ValueError, IndexError) as error:
-            raise DemoError(f'too little was measured in the part "{segment.name}": {error}') \
-                from error
+            raise DemoError(
+                f'too little was measured in the part "{segment.name}": {error}'
+            ) from error
         sentence = complaint(rows[-1])
         if sentence:
             raise DemoError(sentence)
@@ -181,12 +210,14 @@ def _drive(client: DemoClient, folder: Path) -> list[Row]:
 
 
 def _report(rows: list[Row], folder: Path) -> None:
-    print(f'\n{table(rows)}\n\n'
-          'Mean speeds once steady. The wheels are smaller (0.46 m) and closer (0.88 m) than the\n'
-          "robot's plugin expects (0.52 m, 1.1 m), so without slip it drives at "
-          f'{SPEED_RATIO:.3f} of\nthe commanded speed and turns at {TURN_RATIO:.3f} of the '
-          'commanded rate. Gazebo has the\nsame mismatch.\n\n'
-          f'Pictures: {folder / PATH_PICTURE} and {folder / ROBOT_PICTURE}\n')
+    print(
+        f'\n{table(rows)}\n\n'
+        'Mean speeds once steady. The wheels are smaller (0.46 m) and closer (0.88 m) than the\n'
+        "robot's plugin expects (0.52 m, 1.1 m), so without slip it drives at "
+        f'{SPEED_RATIO:.3f} of\nthe commanded speed and turns at {TURN_RATIO:.3f} of the '
+        'commanded rate. Gazebo has the\nsame mismatch.\n\n'
+        f'Pictures: {folder / PATH_PICTURE} and {folder / ROBOT_PICTURE}\n'
+    )
 
 
 _started = time.monotonic()

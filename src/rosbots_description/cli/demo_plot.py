@@ -46,10 +46,21 @@ def plot_path(
         axes.plot([s.x for s in samples], [s.y for s in samples], linewidth=3, label=label)
     axes.plot([s.x for s in odometry], [s.y for s in odometry], 'k:', linewidth=1, label='odometry')
     for sample in (drive[0][1][0], drive[-1][1][-1]):
-        axes.arrow(sample.x, sample.y, _ARROW * math.cos(sample.yaw),
-                   _ARROW * math.sin(sample.yaw), width=0.02, color='0.3', zorder=3)
-    axes.set(title='The drive from above; arrows: heading at start and end',
-             xlabel='x [m]', ylabel='y [m]', aspect='equal')
+        axes.arrow(
+            sample.x,
+            sample.y,
+            _ARROW * math.cos(sample.yaw),
+            _ARROW * math.sin(sample.yaw),
+            width=0.02,
+            color='0.3',
+            zorder=3,
+        )
+    axes.set(
+        title='The drive from above; arrows: heading at start and end',
+        xlabel='x [m]',
+        ylabel='y [m]',
+        aspect='equal',
+    )
     axes.margins(0.15)
     axes.grid(alpha=0.3)
     axes.legend(loc='best', fontsize='small')

@@ -96,19 +96,25 @@ def expected_motion(segment: Segment) -> MeanMotion:
 def complaint(row: Row) -> str | None:
     """Return a sentence if the robot did not move as commanded, else None."""
     expected, truth = expected_motion(row.segment), row.truth
-    if (abs(truth.speed - expected.speed) <= _SPEED_TOLERANCE
-            and abs(truth.turn_rate - expected.turn_rate) <= _TURN_TOLERANCE):
+    if (
+        abs(truth.speed - expected.speed) <= _SPEED_TOLERANCE
+        and abs(truth.turn_rate - expected.turn_rate) <= _TURN_TOLERANCE
+    ):
         return None
-    return (f'in the part "{row.segment.name}" the robot moved at {truth.speed:.3f} m/s and '
-            f'{truth.turn_rate:.3f} rad/s, but its wheels should give {expected.speed:.3f} m/s and '
-            f'{expected.turn_rate:.3f} rad/s')
+    return (
+        f'in the part "{row.segment.name}" the robot moved at {truth.speed:.3f} m/s and '
+        f'{truth.turn_rate:.3f} rad/s, but its wheels should give {expected.speed:.3f} m/s and '
+        f'{expected.turn_rate:.3f} rad/s'
+    )
 
 
 def table(rows: Sequence[Row]) -> str:
     """Return the measurements as text, one line for each segment."""
     lines = [
         f'{"":17}{"commanded":>16}{"odometry":>18}{"ground truth":>18}{"real-time":>12}',
-        f'{"part":9}{"time":>8}' + f'{"m/s":>8}{"rad/s":>8}' + f'{"m/s":>10}{"rad/s":>8}' * 2
+        f'{"part":9}{"time":>8}'
+        + f'{"m/s":>8}{"rad/s":>8}'
+        + f'{"m/s":>10}{"rad/s":>8}' * 2
         + f'{"factor":>12}',
     ]
     for row in rows:
@@ -116,9 +122,12 @@ def table(rows: Sequence[Row]) -> str:
         lines.append(
             f'{segment.name:9}{segment.duration:6.1f} s'
             f'{segment.speed:8.2f}{segment.turn_rate:8.2f}'
-            + ''.join(f'{_rounded(motion.speed):10.3f}{_rounded(motion.turn_rate):8.3f}'
-                      for motion in (row.odometry, row.truth))
-            + f'{row.real_time_factor:12.3f}')
+            + ''.join(
+                f'{_rounded(motion.speed):10.3f}{_rounded(motion.turn_rate):8.3f}'
+                for motion in (row.odometry, row.truth)
+            )
+            + f'{row.real_time_factor:12.3f}'
+        )
     return '\n'.join(lines)
 
 

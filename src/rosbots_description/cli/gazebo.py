@@ -34,8 +34,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     server = subprocess.Popen([sys.executable, folder / 'gzserver', *arguments])
     try:
         _use_simulated_time()
-        client = subprocess.Popen([sys.executable, folder / 'gzclient',
-                                   *(word for word in arguments if word == '--verbose')])
+        client = subprocess.Popen(
+            [
+                sys.executable,
+                folder / 'gzclient',
+                *(word for word in arguments if word == '--verbose'),
+            ]
+        )
         headless = not display_works()  # then the client ends at once, and the server continues
         while not told and server.poll() is None and (headless or client.poll() is None):
             time.sleep(_POLL)

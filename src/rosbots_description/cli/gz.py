@@ -15,9 +15,14 @@ from .gzserver import split_remappings
 from .number_arguments import finite, without_exponents
 
 DONE, FAILED, USAGE = 0, 1, 2  # exit codes
-_POSE = (('x', 'position along x [m]'), ('y', 'position along y [m]'),
-         ('z', 'position along z [m]'), ('R', 'roll [rad]'), ('P', 'pitch [rad]'),
-         ('Y', 'yaw [rad]'))
+_POSE = (
+    ('x', 'position along x [m]'),
+    ('y', 'position along y [m]'),
+    ('z', 'position along z [m]'),
+    ('R', 'roll [rad]'),
+    ('P', 'pitch [rad]'),
+    ('Y', 'yaw [rad]'),
+)
 _BY_ROSTOPIC = ('info', 'echo', 'hz', 'bw')  # options of `gz topic` that rostopic has as commands
 # Commands of Gazebo without a counterpart here.
 NOT_HERE = {
@@ -32,8 +37,10 @@ NOT_HERE = {
 def parser() -> argparse.ArgumentParser:
     """Return the parser of gz, with the option names of Gazebo 11."""
     made = argparse.ArgumentParser(
-        prog='gz', description='Look at the running simulation and change it.',
-        epilog='gz COMMAND --help shows the options of a command.')
+        prog='gz',
+        description='Look at the running simulation and change it.',
+        epilog='gz COMMAND --help shows the options of a command.',
+    )
     commands = made.add_subparsers(dest='command', metavar='COMMAND', required=True)
 
     def command(name: str, text: str) -> argparse.ArgumentParser:
@@ -54,28 +61,40 @@ def _help(add: argparse.ArgumentParser) -> None:
 
 
 def _add_world_name(add: argparse.ArgumentParser) -> None:
-    add.add_argument('-w', '--world-name', metavar='NAME',
-                     help='accepted; a simulator has one world')
+    add.add_argument(
+        '-w', '--world-name', metavar='NAME', help='accepted; a simulator has one world'
+    )
 
 
 def _model(add: argparse.ArgumentParser) -> None:
     add.add_argument('-m', '--model-name', metavar='NAME', help='the model; needed except with -l')
     _add_world_name(add)
     what = add.add_mutually_exclusive_group()
-    what.add_argument('-l', '--list', action='store_true',
-                      help='not in Gazebo: print the names of all models')
+    what.add_argument(
+        '-l', '--list', action='store_true', help='not in Gazebo: print the names of all models'
+    )
     what.add_argument('-d', '--delete', action='store_true', help='delete it')
-    what.add_argument('-f', '--spawn-file', metavar='FILE',
-                      help='spawn it from an SDF or URDF file, at the pose given by -x … -Y')
-    what.add_argument('-s', '--spawn-string', action='store_true',
-                      help='spawn it from standard input')
-    what.add_argument('-i', '--info', action='store_true',
-                      help='print its pose, joints and links')
-    what.add_argument('-p', '--pose', action='store_true',
-                      help='print its pose: x y z roll pitch yaw [m, rad]')
+    what.add_argument(
+        '-f',
+        '--spawn-file',
+        metavar='FILE',
+        help='spawn it from an SDF or URDF file, at the pose given by -x … -Y',
+    )
+    what.add_argument(
+        '-s', '--spawn-string', action='store_true', help='spawn it from standard input'
+    )
+    what.add_argument('-i', '--info', action='store_true', help='print its pose, joints and links')
+    what.add_argument(
+        '-p', '--pose', action='store_true', help='print its pose: x y z roll pitch yaw [m, rad]'
+    )
     for letter, text in _POSE:
-        add.add_argument(f'-{letter}', f'--pose-{letter}', metavar='NUMBER', type=finite,
-                         help=f'move it, or spawn it there: {text}; those not given are 0')
+        add.add_argument(
+            f'-{letter}',
+            f'--pose-{letter}',
+            metavar='NUMBER',
+            type=finite,
+            help=f'move it, or spawn it there: {text}; those not given are 0',
+        )
 
 
 def _gravity(text: str) -> tuple[float, ...]:
@@ -95,16 +114,26 @@ def _physics(add: argparse.ArgumentParser) -> None:
     _add_world_name(add)
     add.add_argument('-g', '--gravity', metavar='X,Y,Z', type=_gravity, help='[m/s^2]')
     add.add_argument('-s', '--step-size', metavar='SECONDS', type=finite, help='of a step [s]')
-    add.add_argument('-i', '--iters', metavar='NUMBER', type=_steps,
-                     help="of the solver's iterations")
-    add.add_argument('-u', '--update-rate', metavar='HZ', type=finite,
-                     help='steps per second of wall time; 0: as many as possible')
+    add.add_argument(
+        '-i', '--iters', metavar='NUMBER', type=_steps, help="of the solver's iterations"
+    )
+    add.add_argument(
+        '-u',
+        '--update-rate',
+        metavar='HZ',
+        type=finite,
+        help='steps per second of wall time; 0: as many as possible',
+    )
 
 
 def _sdf(add: argparse.ArgumentParser) -> None:
     what = add.add_mutually_exclusive_group(required=True)
-    what.add_argument('-k', '--check', metavar='FILE',
-                      help='read a world, an SDF model or a URDF as the simulator would')
+    what.add_argument(
+        '-k',
+        '--check',
+        metavar='FILE',
+        help='read a world, an SDF model or a URDF as the simulator would',
+    )
     what.add_argument('-p', '--print', metavar='FILE', help='print an SDF file, or a URDF as SDF')
     for short, name in (('d', 'describe'), ('o', 'doc')):
         what.add_argument(f'-{short}', f'--{name}', action='store_true', help='not supported')
@@ -114,8 +143,9 @@ def _sdf(add: argparse.ArgumentParser) -> None:
 
 def _stats(add: argparse.ArgumentParser) -> None:
     _add_world_name(add)
-    add.add_argument('-d', '--duration', metavar='SECONDS', type=finite,
-                     help='end after this wall time')
+    add.add_argument(
+        '-d', '--duration', metavar='SECONDS', type=finite, help='end after this wall time'
+    )
     add.add_argument('-p', '--plot', action='store_true', help='print comma-separated values')
 
 
@@ -132,16 +162,18 @@ def _topic(add: argparse.ArgumentParser) -> None:
         what.add_argument(f'-{short}', f'--{name}', metavar='TOPIC', help=text)
     what.add_argument('-v', '--view', nargs='?', const='', metavar='TOPIC', help='not supported')
     add.add_argument('-u', '--unformatted', action='store_true', help='accepted; no effect')
-    add.add_argument('-d', '--duration', metavar='SECONDS', type=finite,
-                     help='end after this wall time')
+    add.add_argument(
+        '-d', '--duration', metavar='SECONDS', type=finite, help='end after this wall time'
+    )
 
 
 def _world(add: argparse.ArgumentParser) -> None:
     _add_world_name(add)
     add.add_argument('-p', '--pause', type=int, choices=(0, 1), help='1: pause, 0: continue')
     add.add_argument('-s', '--step', action='store_true', help='pause, then make one step')
-    add.add_argument('-m', '--multi-step', metavar='N', type=_steps,
-                     help='pause, then make N steps')
+    add.add_argument(
+        '-m', '--multi-step', metavar='N', type=_steps, help='pause, then make N steps'
+    )
     add.add_argument('-r', '--reset-all', action='store_true', help='reset time and models')
     add.add_argument('-t', '--reset-time', action='store_true', help='not supported')
     add.add_argument('-o', '--reset-models', action='store_true', help='reset the models')
@@ -168,13 +200,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     _require_something(options, flags)
     # Imported late: help and wrong usage are fast, and need no ROS.
     from ..ros_api.clients import gz
+
     return gz.run(flags.command, flags, remappings)
 
 
 def _require_something(options: argparse.ArgumentParser, flags: argparse.Namespace) -> None:
     """End with 2 if the options do not say what to do."""
-    given = {name for name, value in vars(flags).items()
-             if value is not None and value is not False}  # 0 is a value
+    given = {
+        name for name, value in vars(flags).items() if value is not None and value is not False
+    }  # 0 is a value
     given -= {'command', 'world_name'}
     if flags.command == 'model' and not flags.list and flags.model_name is None:
         options.error('model: the name of a model is needed: -m NAME')
@@ -187,8 +221,11 @@ def _describe(flags: argparse.Namespace) -> int:
     from ..ros_api.node import description_file  # loads all parsers
 
     if flags.check is None and flags.print is None:
-        return _fail('sdf', 'of the options only -k and -p are supported; SDF is specified at '
-                     'http://sdformat.org/spec')
+        return _fail(
+            'sdf',
+            'of the options only -k and -p are supported; SDF is specified at '
+            'http://sdformat.org/spec',
+        )
     try:
         if flags.print is not None:
             sys.stdout.write(f'{description_file.sdf_text(flags.print)}\n')

@@ -31,10 +31,17 @@ OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 def parser() -> argparse.ArgumentParser:
     """Return the parser of gzclient's options."""
     made = argparse.ArgumentParser(
-        prog='gzclient', description='Look at the simulated world, through RViz.')
+        prog='gzclient', description='Look at the simulated world, through RViz.'
+    )
     made.add_argument('--verbose', action='store_true', help='accepted; no effect')
-    made.add_argument('-g', '--gui-plugin', action='append', metavar='FILE', default=[],
-                      help='accepted; there is nothing to plug into')
+    made.add_argument(
+        '-g',
+        '--gui-plugin',
+        action='append',
+        metavar='FILE',
+        default=[],
+        help='accepted; there is nothing to plug into',
+    )
     return made
 
 
@@ -72,8 +79,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if unknown:
         _say(f'unknown options are ignored: {" ".join(unknown)}')
     if not display_works():
-        _say(f'{no_window()}; the simulator runs without one, and web:=true or '
-             'rosrun gazebo_ros gzweb shows it in a browser')
+        _say(
+            f'{no_window()}; the simulator runs without one, and web:=true or '
+            'rosrun gazebo_ros gzweb shows it in a browser'
+        )
         return 0
     rviz, config = shutil.which('rviz'), config_file()
     if rviz is None:
@@ -151,8 +160,10 @@ def _run_window(command: Sequence[str], environment: Mapping[str, str]) -> int:
             return 0
         if code not in CRASHES or time.monotonic() - started > OPENS:
             break
-        _say(f'RViz crashed as it opened ({signal.Signals(-code).name}); '
-             + ('restarting it' if left else f'no window after {STARTS} starts'))
+        _say(
+            f'RViz crashed as it opened ({signal.Signals(-code).name}); '
+            + ('restarting it' if left else f'no window after {STARTS} starts')
+        )
     return code if code >= 0 else 128 - code  # 128 + signal, as in shells
 
 

@@ -28,14 +28,28 @@ def parser() -> argparse.ArgumentParser:
         description='Simulate a world, physics by PyBullet, behind the ROS interface of Gazebo.',
     )
     add = made.add_argument
-    add('world', nargs='?', default=EMPTY_WORLD,
+    add(
+        'world',
+        nargs='?',
+        default=EMPTY_WORLD,
         help='world file, by path or along GAZEBO_RESOURCE_PATH; included are worlds/empty.world, '
-             f'line, maze, room, rooms and shapes; default {EMPTY_WORLD}')
+        f'line, maze, room, rooms and shapes; default {EMPTY_WORLD}',
+    )
     add('-u', '--pause', action='store_true', help='start paused')
-    add('-e', '--physics', metavar='ENGINE', default=ENGINE,
-        help='accepted for compatibility; the engine is always PyBullet')
-    add('--seed', type=int, metavar='NUMBER', default=0,
-        help='of the noise of sensors; the same seed gives the same run, default 0')
+    add(
+        '-e',
+        '--physics',
+        metavar='ENGINE',
+        default=ENGINE,
+        help='accepted for compatibility; the engine is always PyBullet',
+    )
+    add(
+        '--seed',
+        type=int,
+        metavar='NUMBER',
+        default=0,
+        help='of the noise of sensors; the same seed gives the same run, default 0',
+    )
     add('--iters', type=_count, metavar='NUMBER', help='exit after this number of steps')
     add('--verbose', action='store_true', help='log debug messages too')
     add('-r', '--record', action='store_true', help='not supported')
@@ -45,11 +59,20 @@ def parser() -> argparse.ArgumentParser:
     add('-p', '--play', metavar='FILE', help='not supported')
     add('-o', '--profile', metavar='NAME', help="accepted; the world's default physics is used")
     add('--lockstep', action='store_true', help='accepted; sensors are always in lockstep')
-    add('-s', '--server-plugin', action='append', metavar='FILE', default=[],
-        help='accepted; the plugins of gazebo_ros are built in')
+    add(
+        '-s',
+        '--server-plugin',
+        action='append',
+        metavar='FILE',
+        default=[],
+        help='accepted; the plugins of gazebo_ros are built in',
+    )
     add('--minimal_comms', action='store_true', help='accepted; no effect')
-    add('--replace', action='store_true',
-        help='not in Gazebo: shut down and replace a simulator on the same ROS master')
+    add(
+        '--replace',
+        action='store_true',
+        help='not in Gazebo: shut down and replace a simulator on the same ROS master',
+    )
     add('-v', '--version', action='version', version=_VERSION, help='print the version and exit')
     return made
 
@@ -93,8 +116,15 @@ def _main(arguments: Sequence[str]) -> int:
 
     gc.freeze()
     gc.enable()
-    options = node.Options(given.world, given.pause, given.iters, remarks(given, unknown),
-                           given.verbose, given.replace, given.seed)
+    options = node.Options(
+        given.world,
+        given.pause,
+        given.iters,
+        remarks(given, unknown),
+        given.verbose,
+        given.replace,
+        given.seed,
+    )
     try:
         return node.run(options, remappings)
     except SimError as error:
@@ -116,20 +146,29 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
     if unknown:
         found.append((logging.WARNING, f'unknown options are ignored: {" ".join(unknown)}'))
     if given.physics != ENGINE:
-        found.append((
-            logging.INFO,
-            f"physics engine '{given.physics}' is not available; PyBullet is used, with the "
-            'parameters of ode',
-        ))
-    recording = (given.record_encoding, given.record_path, given.record_period,
-                 given.record_filter, given.record_resources)
+        found.append(
+            (
+                logging.INFO,
+                f"physics engine '{given.physics}' is not available; PyBullet is used, with the "
+                'parameters of ode',
+            )
+        )
+    recording = (
+        given.record_encoding,
+        given.record_path,
+        given.record_period,
+        given.record_filter,
+        given.record_resources,
+    )
     if given.record or any(recording):
         found.append((logging.WARNING, 'recording (-r) is not supported; use rosbag'))
     if given.play:
         found.append((logging.WARNING, f'playing {given.play} (-p) is not supported; use rosbag'))
     if given.profile:
-        found.append((
-            logging.WARNING,
-            f"--profile {given.profile} is not supported: the world's default physics is used",
-        ))
+        found.append(
+            (
+                logging.WARNING,
+                f"--profile {given.profile} is not supported: the world's default physics is used",
+            )
+        )
     return tuple(found)

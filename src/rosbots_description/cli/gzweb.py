@@ -24,16 +24,23 @@ NAME = 'gzweb'
 def parser() -> argparse.ArgumentParser:
     """Return the parser of gzweb's options."""
     made = argparse.ArgumentParser(
-        prog=NAME, description='See and control the simulated world in a browser.',
+        prog=NAME,
+        description='See and control the simulated world in a browser.',
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
-        allow_abbrev=False)  # --token is no --token-file
+        allow_abbrev=False,
+    )  # --token is no --token-file
     add_options(made)
     made.add_argument('--port', type=int, default=PORT, help='0 for any that is free')
-    made.add_argument('--no-token', action='store_true',
-                      help='let in everybody who reaches the port, every user of this machine '
-                           'included')
-    made.add_argument('--open', action='store_true',
-                      help='open the address in a browser, where there is a display')
+    made.add_argument(
+        '--no-token',
+        action='store_true',
+        help='let in everybody who reaches the port, every user of this machine included',
+    )
+    made.add_argument(
+        '--open',
+        action='store_true',
+        help='open the address in a browser, where there is a display',
+    )
     return made
 
 
@@ -42,8 +49,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     own, remappings = split_remappings(sys.argv[1:] if arguments is None else arguments)
     options = parser().parse_args(own)
     if importlib.util.find_spec('viser') is None:
-        return _fail('no window: the Python package viser is not installed; '
-                     './rosbots setup web or pip install viser==1.1.1 does that')
+        return _fail(
+            'no window: the Python package viser is not installed; '
+            './rosbots setup web or pip install viser==1.1.1 does that'
+        )
     use_one_heap()
     from ..ros_api.transport import (
         AddressError,
@@ -58,8 +67,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     try:
         token, viewing_token = given_tokens(options)
-        site = Site(options.host, options.port, token, viewing_token=viewing_token,
-                    is_open=options.no_token, most_viewers=options.max_viewers)
+        site = Site(
+            options.host,
+            options.port,
+            token,
+            viewing_token=viewing_token,
+            is_open=options.no_token,
+            most_viewers=options.max_viewers,
+        )
         start_node(NAME, remappings, wall_time=True)
     except (WindowError, AddressError) as error:
         return _fail(str(error))
@@ -68,16 +83,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     connect_logging(time.time_ns)
     watch_master(Registrar(), ())
     if not site.token:
-        logger.warning('there is no token: everybody who reaches port %d of this machine, each of '
-                       'its users included, sees and controls the simulation', site.get_port())
+        logger.warning(
+            'there is no token: everybody who reaches port %d of this machine, each of '
+            'its users included, sees and controls the simulation',
+            site.get_port(),
+        )
     elif options.host not in LOOPBACK:
-        _say('whoever has this address sees and controls the simulation, and the connection is '
-             'not encrypted')
+        _say(
+            'whoever has this address sees and controls the simulation, and the connection is '
+            'not encrypted'
+        )
     page = Page(site, GazeboSimulator())
     gc.freeze()  # otherwise each full collection, as after a visit, scans all modules
     gc.collect()
-    with (announced(NAME, site.address, site.viewing_address),
-          opened(site.address) if options.open else nullcontext()):
+    with (
+        announced(NAME, site.address, site.viewing_address),
+        opened(site.address) if options.open else nullcontext(),
+    ):
         while is_running():
             page.poll()
             time.sleep(PERIOD)

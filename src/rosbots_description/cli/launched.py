@@ -26,8 +26,13 @@ class Launched:
         with open(log, 'wb', opener=partial(os.open, mode=0o600)) as output:
             # a new session: Ctrl-C reaches only this process, which ends the others in order
             self._process = subprocess.Popen(
-                ['/usr/bin/roslaunch', *arguments], stdin=subprocess.DEVNULL, stdout=output,
-                stderr=subprocess.STDOUT, env=environment, start_new_session=True)
+                ['/usr/bin/roslaunch', *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                env=environment,
+                start_new_session=True,
+            )
 
     def __enter__(self) -> Launched:
         return self
@@ -70,8 +75,11 @@ class Launched:
     def error(self) -> str:
         """Return the last error line of the output, and the path of the log."""
         text = _ESCAPE.sub('', self.log.read_text(errors='replace'))
-        errors = [re.sub(', cmd .*', ']', line) for line in text.splitlines()
-                  if any(word in line for word in ('ERROR', 'FATAL', 'has died'))]
+        errors = [
+            re.sub(', cmd .*', ']', line)
+            for line in text.splitlines()
+            if any(word in line for word in ('ERROR', 'FATAL', 'has died'))
+        ]
         return f'{errors[-1]} (see {self.log})' if errors else f'see {self.log}'
 
 

@@ -24,5 +24,7 @@ def finite(text: str) -> float:
 
 def without_exponents(arguments: Sequence[str]) -> list[str]:
     """Return the arguments with -1e-3 written as -0.001, which argparse reads as a number."""
-    return [format(Decimal(text), 'f') if _NEGATIVE_WITH_EXPONENT.fullmatch(text) else text
-            for text in arguments]
+    return [
+        format(Decimal(text), 'f') if _NEGATIVE_WITH_EXPONENT.fullmatch(text) else text
+        for text in arguments
+    ]

@@ -24,24 +24,31 @@ def given_token(path: str, variable: str = VARIABLE) -> str:
     with open(path, encoding='utf-8', errors='replace') as file:
         status = os.fstat(file.fileno())
         if status.st_mode & 0o077 or status.st_uid != os.geteuid():
-            raise PermissionError(
-                0, 'others can read it; make it your own, and chmod 600', path)
+            raise PermissionError(0, 'others can read it; make it your own, and chmod 600', path)
         return file.read(1000).strip()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of pages: where they are served, to whom, and to how many."""
-    parser.add_argument('--host', default=HOST,
-                        help='address to serve at; 0.0.0.0 is all of this machine')
+    parser.add_argument(
+        '--host', default=HOST, help='address to serve at; 0.0.0.0 is all of this machine'
+    )
     for who, variable in (('', VARIABLE), ('viewing-', VIEWING_VARIABLE)):
         parser.add_argument(
-            f'--{who}token-file', metavar='FILE', default='',
+            f'--{who}token-file',
+            metavar='FILE',
+            default='',
             help='only its owner can read it; it has the token that the address '
-                 f'{"for looking " if who else ""}ends with, as the variable {variable} may; made '
-                 'at random without both')
-    parser.add_argument('--max-viewers', type=_number_of_browsers, default=MOST_VIEWERS,
-                        metavar='N', help='browsers at once by each of the two addresses: for '
-                                          'control, and for looking only')
+            f'{"for looking " if who else ""}ends with, as the variable {variable} may; made '
+            'at random without both',
+        )
+    parser.add_argument(
+        '--max-viewers',
+        type=_number_of_browsers,
+        default=MOST_VIEWERS,
+        metavar='N',
+        help='browsers at once by each of the two addresses: for control, and for looking only',
+    )
 
 
 def _number_of_browsers(text: str) -> int:
@@ -56,8 +63,10 @@ def given_tokens(options: argparse.Namespace) -> tuple[str, str]:
     Raises:
         OSError: a file cannot be read, or others can read it; its `filename` says which.
     """
-    return (given_token(options.token_file, VARIABLE),
-            given_token(options.viewing_token_file, VIEWING_VARIABLE))
+    return (
+        given_token(options.token_file, VARIABLE),
+        given_token(options.viewing_token_file, VIEWING_VARIABLE),
+    )
 
 
 @contextmanager
@@ -72,8 +81,10 @@ def announced(program: str, address: str, viewing_address: str) -> Iterator[None
             place, _, token = one.partition('?')
             if token and is_readable_by_others(sys.stderr):
                 page = stack.enter_context(private_page(one))
-                sys.stderr.write(f'{program}: {what} {place}; {page} opens it, with the token, '
-                                 'which others could read here\n')
+                sys.stderr.write(
+                    f'{program}: {what} {place}; {page} opens it, with the token, '
+                    'which others could read here\n'
+                )
             elif one:
                 sys.stderr.write(f'{program}: {what} {one}\n')
         yield

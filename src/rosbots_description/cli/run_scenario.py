@@ -20,10 +20,12 @@ FAILED, USAGE = 1, 2  # exit codes
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the options."""
     made = argparse.ArgumentParser(
-        prog=NAME, description='Make one run of a scenario with the running simulator.')
+        prog=NAME, description='Make one run of a scenario with the running simulator.'
+    )
     made.add_argument('scenario', metavar='SCENARIO.yaml', help='see doc/batch.md')
-    made.add_argument('--run', type=int, default=0, metavar='NUMBER',
-                      help='which of its runs; default: 0')
+    made.add_argument(
+        '--run', type=int, default=0, metavar='NUMBER', help='which of its runs; default: 0'
+    )
     return made
 
 
@@ -70,7 +72,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if test_flags:
         # By its name in a string: the tests have a folder of that name.
         importlib.import_module('rostest').rosrun(
-            'rosbots_simulator', NAME, ScenarioTest, [sys.argv[0], *test_flags])
+            'rosbots_simulator', NAME, ScenarioTest, [sys.argv[0], *test_flags]
+        )
         return 0
     sentence = fault()
     return _fail(sentence, FAILED) if sentence else 0

@@ -10,8 +10,10 @@ from .gzserver import split_remappings
 def parser() -> argparse.ArgumentParser:
     """Return the parser of save_world's options."""
     made = argparse.ArgumentParser(
-        prog='save_world', description='Save the running world as it stands as a world file, which '
-                                       'world_name:=FILE opens again.')
+        prog='save_world',
+        description='Save the running world as it stands as a world file, which '
+        'world_name:=FILE opens again.',
+    )
     made.add_argument('file', metavar='FILE', help='ends in .world or .sdf')
     made.add_argument('-f', '--force', action='store_true', help='overwrite a file')
     return made
@@ -27,4 +29,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser().parse_args(own)
     # Imported late: help and wrong usage are fast, and need no ROS.
     from ..ros_api.clients import save_world
+
     return save_world.run(options.file, options.force, remappings)

@@ -52,13 +52,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     if not sys.stdin.isatty():
-        print('teleop_twist_keyboard reads keys, but its standard input is not a terminal. Start '
-              'it with rosrun in a terminal of its own; in a launch file give the node '
-              'launch-prefix="xterm -e".', file=sys.stderr)
+        print(
+            'teleop_twist_keyboard reads keys, but its standard input is not a terminal. Start '
+            'it with rosrun in a terminal of its own; in a launch file give the node '
+            'launch-prefix="xterm -e".',
+            file=sys.stderr,
+        )
         return 1
     # Imported late, so that the message above needs no ROS.
     from ..ros_api.clients.velocity_publisher import VelocityPublisher
     from ..ros_api.transport import is_running, own_parameters, start_node
+
     try:
         start_node('teleop_twist_keyboard', arguments)
         settings = Settings(**own_parameters(vars(Settings())))
@@ -98,8 +102,9 @@ def _drive(
     settings: Settings, publisher: VelocityPublisher, fd: int, go_on: Callable[[], bool]
 ) -> None:
     """Convert keys to commands until Ctrl-C, shutdown of the node or end of the terminal."""
-    driver = Driver(Speeds(settings.speed, settings.turn,
-                           settings.speed_limit, settings.turn_limit))
+    driver = Driver(
+        Speeds(settings.speed, settings.turn, settings.speed_limit, settings.turn_limit)
+    )
 
     def send() -> None:
         velocity = driver.velocity()

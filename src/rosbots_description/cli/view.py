@@ -21,11 +21,17 @@ ARGUMENT = re.compile(r'(\w+):=(.*)', re.DOTALL)
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the options."""
     made = argparse.ArgumentParser(
-        prog=NAME, allow_abbrev=False, formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+        prog=NAME,
+        allow_abbrev=False,
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
         description='Show a robot or a world in the browser: see it, move its joints, drive it, '
-                    'read its sensors. Ctrl-C ends.')
-    made.add_argument('file', help='a URDF, xacro, SDF or world file, or the name of a world: '
-                                   'empty, room, rooms, maze, line, shapes')
+        'read its sensors. Ctrl-C ends.',
+    )
+    made.add_argument(
+        'file',
+        help='a URDF, xacro, SDF or world file, or the name of a world: '
+        'empty, room, rooms, maze, line, shapes',
+    )
     made.add_argument('arguments', nargs='*', metavar='NAME:=VALUE', help='arguments of xacro')
     add_options(made)
     made.add_argument('--port', type=int, default=0, help='0 for any that is free')
@@ -44,16 +50,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _fail(f"'{given}' is no argument of xacro; write NAME:=VALUE")
         values[match[1]] = match[2]
     if importlib.util.find_spec('viser') is None:
-        return _fail('no page: the Python package viser is not installed; '
-                     "pip install 'rosbots_description[web]' or ./rosbots setup web does that")
+        return _fail(
+            'no page: the Python package viser is not installed; '
+            "pip install 'rosbots_description[web]' or ./rosbots setup web does that"
+        )
     from ..sim.core import SimError
     from ..viewer import Viewer, open_file
     from ..web import LOOPBACK, Site, WindowError
 
     try:
         token, viewing_token = given_tokens(options)
-        site = Site(options.host, options.port, token, viewing_token=viewing_token,
-                    most_viewers=options.max_viewers)
+        site = Site(
+            options.host,
+            options.port,
+            token,
+            viewing_token=viewing_token,
+            most_viewers=options.max_viewers,
+        )
     except WindowError as error:
         return _fail(str(error))
     except OSError as error:
@@ -65,12 +78,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(str(error))
     _list(file.faults)
     if options.host not in LOOPBACK:
-        _say('whoever has this address sees and controls the simulation, and the connection is '
-             'not encrypted')
+        _say(
+            'whoever has this address sees and controls the simulation, and the connection is '
+            'not encrypted'
+        )
     with file.world as world, _until_terminated():
         viewer = Viewer(world, site, paused=options.paused)
-        with (announced(NAME, site.address, site.viewing_address),
-              nullcontext() if options.no_open else opened(site.address)):
+        with (
+            announced(NAME, site.address, site.viewing_address),
+            nullcontext() if options.no_open else opened(site.address),
+        ):
             viewer.serve_until_interrupted()
     return 0
 

@@ -15,8 +15,10 @@ from html import escape
 from pathlib import Path
 from typing import TextIO
 
-PAGE = ('<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer">'
-        '<meta http-equiv="refresh" content="0;url={}"><title>gzweb</title>\n')
+PAGE = (
+    '<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer">'
+    '<meta http-equiv="refresh" content="0;url={}"><title>gzweb</title>\n'
+)
 
 
 @contextmanager
@@ -28,9 +30,13 @@ def opened(address: str) -> Iterator[bool]:
         return
     with private_page(address) as page:
         # It ends at once, or when the browser does; in both cases it is not waited for.
-        subprocess.Popen([program, str(page)], stdin=subprocess.DEVNULL,
-                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                         start_new_session=True)
+        subprocess.Popen(
+            [program, str(page)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
         yield True
 
 
@@ -39,7 +45,8 @@ def private_page(address: str) -> Iterator[Path]:
     """Yield the path of a page that leads to an address and that only its owner can read."""
     # A folder of mode 700; that of the session, if there is one, is cleared at its end.
     with tempfile.TemporaryDirectory(
-            prefix='gzweb-', dir=_own_folder(), ignore_cleanup_errors=True) as folder:
+        prefix='gzweb-', dir=_own_folder(), ignore_cleanup_errors=True
+    ) as folder:
         page = Path(folder, 'window.html')
         page.touch(mode=0o600)
         page.write_text(PAGE.format(escape(address)), encoding='utf-8')

@@ -20,8 +20,14 @@ import yaml
 from ..sim.xacro_module import import_xacro
 
 _PYTHON = {'bool': bool, 'len': len, 'range': range, 'sorted': sorted}
-_UNITS = {'!radians': 1.0, '!degrees': math.pi / 180.0, '!meters': 1.0, '!millimeters': 1e-3,
-          '!foot': 0.3048, '!inches': 0.0254}  # in rad and m
+_UNITS = {
+    '!radians': 1.0,
+    '!degrees': math.pi / 180.0,
+    '!meters': 1.0,
+    '!millimeters': 1e-3,
+    '!foot': 0.3048,
+    '!inches': 0.0254,
+}  # in rad and m
 
 
 def main() -> int:
@@ -31,8 +37,10 @@ def main() -> int:
     try:
         xacro = import_xacro()  # after the path is cleaned
     except ImportError:
-        sys.stderr.write(f'xacro: the Python module xacro is missing for {sys.executable}; install '
-                         'it with "python3 -m pip install xacro==1.13.3".\n')
+        sys.stderr.write(
+            f'xacro: the Python module xacro is missing for {sys.executable}; install '
+            'it with "python3 -m pip install xacro==1.13.3".\n'
+        )
         return 1
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(encoding='utf-8')  # the encoding of XML, despite PYTHONIOENCODING
@@ -101,16 +109,21 @@ def _load_yaml(xacro: ModuleType, name: str) -> object:
 
 
 def _include(
-    xacro: ModuleType, include: Callable[..., None], element: Element, macros: object,
-    symbols: object, func: object,
+    xacro: ModuleType,
+    include: Callable[..., None],
+    element: Element,
+    macros: object,
+    symbols: object,
+    func: object,
 ) -> None:
     """Include a file, or nothing if it is `optional` and missing."""
     optional = element.getAttribute('optional')
     if optional:
         element.removeAttribute('optional')
         path = xacro.abs_filename_spec(xacro.eval_text(element.getAttribute('filename'), symbols))
-        if (xacro.get_boolean_value(xacro.eval_text(optional, symbols), optional)
-                and not os.path.exists(path)):
+        if xacro.get_boolean_value(
+            xacro.eval_text(optional, symbols), optional
+        ) and not os.path.exists(path):
             xacro.remove_previous_comments(element)
             xacro.replace_node(element, by=[])
             return

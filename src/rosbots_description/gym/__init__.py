@@ -15,8 +15,12 @@ if TYPE_CHECKING:
 
 __all__ = ['ParallelEnv', 'Randomisation', 'SimEnv', 'make_parallel', 'register_envs']
 
-_HOMES = {'ParallelEnv': 'parallel', 'Randomisation': 'randomisation', 'SimEnv': 'env',
-          'make_parallel': 'parallel'}
+_HOMES = {
+    'ParallelEnv': 'parallel',
+    'Randomisation': 'randomisation',
+    'SimEnv': 'env',
+    'make_parallel': 'parallel',
+}
 
 
 def __getattr__(name: str) -> object:

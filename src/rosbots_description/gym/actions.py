@@ -40,8 +40,13 @@ def _of_plugin(plugin: Any) -> Command | None:  # noqa: ANN401  each class has i
     if isinstance(plugin, Drive):
         return Command(name, 2, lambda numbers: plugin.command(numbers[0], numbers[1]))
     if isinstance(plugin, Force):
-        return Command(name, 6, lambda numbers: plugin.command(
-            (numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5])))
+        return Command(
+            name,
+            6,
+            lambda numbers: plugin.command(
+                (numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5])
+            ),
+        )
     return None
 
 
@@ -50,13 +55,18 @@ def _of_controller(controller: Controller) -> Command | None:
     match controller:
         case MecanumDriveController():
             return Command(
-                name, 3, lambda numbers: controller.command(numbers[0], numbers[2], numbers[1]))
+                name, 3, lambda numbers: controller.command(numbers[0], numbers[2], numbers[1])
+            )
         case DriveController():
             return Command(name, 2, lambda numbers: controller.command(*numbers))
         case JointGroupCommandController() | JointGroupPositionController():
             return Command(name, len(controller.joints), controller.command)
-        case (JointCommandController() | JointPositionController() | JointVelocityController()
-              | GripperActionController()):
+        case (
+            JointCommandController()
+            | JointPositionController()
+            | JointVelocityController()
+            | GripperActionController()
+        ):
             return Command(name, 1, lambda numbers: controller.command(numbers[0]))
     return None
 
@@ -72,8 +82,9 @@ def _effort(world: World, joint: Joint) -> Command:
 def _commands(world: World, robot: Model, names: Sequence[str] | None) -> Iterator[Command]:
     plugins = robot.plugins.values()
     loaded = (one for plugin in plugins for one in plugin.controllers.values())
-    of_plugins = {one.name: one for one in (
-        *map(_of_plugin, plugins), *map(_of_controller, loaded)) if one}
+    of_plugins = {
+        one.name: one for one in (*map(_of_plugin, plugins), *map(_of_controller, loaded)) if one
+    }
     if names is None:
         yield from of_plugins.values()
         return
@@ -85,8 +96,9 @@ def _commands(world: World, robot: Model, names: Sequence[str] | None) -> Iterat
         else:
             raise NotFoundError(
                 f"model '{robot.name}' takes no action '{name}'; its plugins and controllers with "
-                f"commands: {', '.join(of_plugins) or 'none'}; its joints: "
-                f"{', '.join(robot.joints) or 'none'}")
+                f'commands: {", ".join(of_plugins) or "none"}; its joints: '
+                f'{", ".join(robot.joints) or "none"}'
+            )
 
 
 class Actions:
@@ -108,17 +120,22 @@ class Actions:
             SimError: there is no command at all.
             ValueError: the limits of a command are not positive numbers, one for each of its own.
         """
-        self._commands = [(one, _scale(one, 1.0 if limits is None else limits[one.name]))
-                          for one in _commands(world, robot, None if limits is None else [*limits])]
+        self._commands = [
+            (one, _scale(one, 1.0 if limits is None else limits[one.name]))
+            for one in _commands(world, robot, None if limits is None else [*limits])
+        ]
         if not self._commands:
-            raise SimError(f"model '{robot.name}' has no plugin that takes commands; name joints "
-                           'in `actions`, whose efforts are to be set')
+            raise SimError(
+                f"model '{robot.name}' has no plugin that takes commands; name joints "
+                'in `actions`, whose efforts are to be set'
+            )
         boxes: dict[str, spaces.Space[Any]] = {
-            one.name: spaces.Box(-1.0, 1.0, (one.size,), np.float32)
-            for one, _ in self._commands}
+            one.name: spaces.Box(-1.0, 1.0, (one.size,), np.float32) for one, _ in self._commands
+        }
         self._is_single = len(boxes) == 1
-        self.space: spaces.Space[Any] = next(iter(boxes.values())) if self._is_single \
-            else spaces.Dict(boxes)
+        self.space: spaces.Space[Any] = (
+            next(iter(boxes.values())) if self._is_single else spaces.Dict(boxes)
+        )
 
     def give(self, action: Any) -> None:  # noqa: ANN401  an element of the space
         """Give the commands of an action; numbers beyond -1 and 1 count as these.
@@ -134,8 +151,9 @@ class Actions:
             elif command.name in action:
                 part = action[command.name]
             else:
-                raise ValueError(f"the action has no '{command.name}'; it is a dict of "
-                                 f'{self._listed()}')
+                raise ValueError(
+                    f"the action has no '{command.name}'; it is a dict of {self._listed()}"
+                )
             command.give(_checked(part, command, scale))
 
     def _listed(self) -> str:
@@ -149,14 +167,15 @@ def _checked(action: Any, command: Command, scale: list[float]) -> list[float]: 
     except (TypeError, ValueError):
         numbers = np.empty(0)
     if numbers.shape != (command.size,):
-        raise ValueError(f"the action of '{command.name}' takes {command.size} numbers from -1 to "
-                         f'1; it got {action!r}')
+        raise ValueError(
+            f"the action of '{command.name}' takes {command.size} numbers from -1 to "
+            f'1; it got {action!r}'
+        )
     found = numbers.tolist()
     for number in found:
         if not -np.inf < number < np.inf:
             raise ValueError(f"the action of '{command.name}' takes finite numbers; it got {found}")
-    return [max(-1.0, min(1.0, number)) * most
-            for number, most in zip(found, scale, strict=True)]
+    return [max(-1.0, min(1.0, number)) * most for number, most in zip(found, scale, strict=True)]
 
 
 def _scale(command: Command, limits: float | Sequence[float]) -> list[float]:
@@ -164,6 +183,8 @@ def _scale(command: Command, limits: float | Sequence[float]) -> list[float]:
     if len(numbers) == 1:
         numbers *= command.size
     if len(numbers) != command.size or not all(0.0 < one < np.inf for one in numbers):
-        raise ValueError(f"the limits of the action '{command.name}' are {limits}; they must be "
-                         f'{command.size} positive numbers, or one for all')
+        raise ValueError(
+            f"the limits of the action '{command.name}' are {limits}; they must be "
+            f'{command.size} positive numbers, or one for all'
+        )
     return numbers

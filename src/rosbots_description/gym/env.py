@@ -89,9 +89,20 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         if not isinstance(randomise, Randomisation | None):
             raise ValueError(f'randomise is {randomise!r}; it takes a Randomisation, or None')
         self._randomise = randomise or Randomisation()
-        self._stage = Stage(Setting(
-            world, robot, pose, dict(arguments or {}), actions, sensors, settle, package_path,
-            model_path, dict(controllers or {})))
+        self._stage = Stage(
+            Setting(
+                world,
+                robot,
+                pose,
+                dict(arguments or {}),
+                actions,
+                sensors,
+                settle,
+                package_path,
+                model_path,
+                dict(controllers or {}),
+            )
+        )
         try:
             self._randomise.require(self.world, self.robot)
             self._steps = self._stage.whole_steps(period)
@@ -103,8 +114,11 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self.observation_space = spaces.Dict({**parts, **(more or {})})
         self.action_space = self._stage.actions.space
         modes = [mode for mode in self.metadata['render_modes'] if mode != 'web' or has_window()]
-        self.metadata = {**self.metadata, 'render_modes': modes,
-                         'render_fps': max(1, round(1.0 / period))}
+        self.metadata = {
+            **self.metadata,
+            'render_modes': modes,
+            'render_fps': max(1, round(1.0 / period)),
+        }
         self._ready = False
 
     def __repr__(self) -> str:
@@ -114,8 +128,9 @@ class SimEnv(gymnasium.Env[Observation, Any]):
     def _require_mode(self, render_mode: str | None) -> None:
         modes = self.metadata['render_modes']
         if render_mode is not None and render_mode not in modes:
-            raise ValueError(f"render_mode is '{render_mode}'; it is one of {', '.join(modes)}, or "
-                             'None')
+            raise ValueError(
+                f"render_mode is '{render_mode}'; it is one of {', '.join(modes)}, or None"
+            )
 
     # What a task defines.
 
@@ -139,8 +154,10 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             observation: at the end of the period.
             action: during it.
         """
-        raise NotImplementedError(f'{type(self).__name__} needs a method score(observation, action)'
-                                  ' that returns the reward and whether the episode has ended')
+        raise NotImplementedError(
+            f'{type(self).__name__} needs a method score(observation, action)'
+            ' that returns the reward and whether the episode has ended'
+        )
 
     def truth(self) -> Info:
         """Return what is true of the world now, for `info`: time [s], pose (x, y, yaw) [m, rad]."""
@@ -223,8 +240,13 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         advance(self._steps)
         observation = self.observe()
         reward, terminated = self.score(observation, action)
-        return (observation, float(reward), bool(terminated), self._stage.has_diverged,
-                self.truth())
+        return (
+            observation,
+            float(reward),
+            bool(terminated),
+            self._stage.has_diverged,
+            self.truth(),
+        )
 
     def render(self) -> Any:  # noqa: ANN401
         """Return what `render_mode` asks for.
@@ -263,8 +285,10 @@ def open_window(world: World, port: int) -> 'Window':
         SimError: viser is not installed, or the port is in use.
     """
     if not has_window():
-        raise SimError("render_mode 'web' needs the Python package viser; "
-                       "pip install 'rosbots_description[web]' installs it")
+        raise SimError(
+            "render_mode 'web' needs the Python package viser; "
+            "pip install 'rosbots_description[web]' installs it"
+        )
     from ..viewer import Window
 
     return Window(world, port)

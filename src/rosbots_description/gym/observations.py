@@ -51,11 +51,15 @@ def observed(robot: Model, names: Sequence[str] | None) -> list[Observed]:
         if name in known:
             found.append(known[name])
         elif name in robot.sensors:
-            raise SimError(f"sensor '{name}' of model '{robot.name}' cannot be observed; what can "
-                           f"be: {', '.join(known) or 'nothing'}")
+            raise SimError(
+                f"sensor '{name}' of model '{robot.name}' cannot be observed; what can "
+                f'be: {", ".join(known) or "nothing"}'
+            )
         else:
-            raise NotFoundError(f"model '{robot.name}' has no sensor '{name}'; what can be "
-                                f"observed: {', '.join(known) or 'nothing'}")
+            raise NotFoundError(
+                f"model '{robot.name}' has no sensor '{name}'; what can be "
+                f'observed: {", ".join(known) or "nothing"}'
+            )
     return found
 
 
@@ -97,8 +101,9 @@ def _scan(sensor: Any) -> Observed:  # noqa: ANN401  a ray sensor
         scan: Scan = sensor.read()
         return np.minimum(scan.ranges, most).astype(np.float32)
 
-    return Observed(sensor.name, spaces.Box(np.float32(least), np.float32(most), shape, np.float32),
-                    read)
+    return Observed(
+        sensor.name, spaces.Box(np.float32(least), np.float32(most), shape, np.float32), read
+    )
 
 
 def _picture(sensor: Any) -> Observed:  # noqa: ANN401  a camera
@@ -108,7 +113,8 @@ def _picture(sensor: Any) -> Observed:  # noqa: ANN401  a camera
     return Observed(
         sensor.name,
         spaces.Box(0, most, (lens.height, lens.width, *pixels.shape[2:]), pixels.dtype.type),
-        lambda: np.asarray(sensor.read().pixels))
+        lambda: np.asarray(sensor.read().pixels),
+    )
 
 
 def _depths(sensor: Any) -> Observed:  # noqa: ANN401  a depth camera
@@ -118,13 +124,17 @@ def _depths(sensor: Any) -> Observed:  # noqa: ANN401  a depth camera
         near: Array = np.minimum(sensor.read().depths, np.float32(lens.far))
         return near
 
-    return Observed(sensor.name, spaces.Box(0.0, lens.far, (lens.height, lens.width), np.float32),
-                    read)
+    return Observed(
+        sensor.name, spaces.Box(0.0, lens.far, (lens.height, lens.width), np.float32), read
+    )
 
 
 def _touch(sensor: Any) -> Observed:  # noqa: ANN401  a contact sensor
-    return Observed(sensor.name, spaces.Box(0.0, 1.0, (1,), np.float32),
-                    lambda: np.array([bool(sensor.read())], np.float32))
+    return Observed(
+        sensor.name,
+        spaces.Box(0.0, 1.0, (1,), np.float32),
+        lambda: np.array([bool(sensor.read())], np.float32),
+    )
 
 
 def _imu(sensor: Any) -> Observed:  # noqa: ANN401  an IMU
@@ -132,12 +142,19 @@ def _imu(sensor: Any) -> Observed:  # noqa: ANN401  an IMU
 
     def read() -> Array:
         reading: ImuReading = sensor.readings.latched or sensor.read()
-        return np.array((*reading.orientation, *reading.angular_velocity,
-                         *reading.linear_acceleration), np.float32)
+        return np.array(
+            (*reading.orientation, *reading.angular_velocity, *reading.linear_acceleration),
+            np.float32,
+        )
 
     return Observed(sensor.name, box(10), read)
 
 
 _SENSORS: dict[str, Callable[[Any], Observed]] = {
-    'ray': _scan, 'gpu_ray': _scan, 'camera': _picture, 'depth': _depths, 'contact': _touch,
-    'imu': _imu}
+    'ray': _scan,
+    'gpu_ray': _scan,
+    'camera': _picture,
+    'depth': _depths,
+    'contact': _touch,
+    'imu': _imu,
+}

@@ -36,7 +36,10 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
     """
 
     def __init__(
-        self, env_fns: Sequence[MakeEnv], *, copy: bool = True,
+        self,
+        env_fns: Sequence[MakeEnv],
+        *,
+        copy: bool = True,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
     ) -> None:
         """Start the processes.
@@ -53,19 +56,24 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
             raise SimError('parallel environments need at least one; num_envs is 0')
         outline = _outline(env_fns[0])
         own = os.getpid()  # where AsyncVectorEnv calls the first one, too, for its spaces
-        first, *others = (partial(_made_in_worker, make, core)
-                          for make, core in zip(env_fns, _cores(len(env_fns)), strict=True))
+        first, *others = (
+            partial(_made_in_worker, make, core)
+            for make, core in zip(env_fns, _cores(len(env_fns)), strict=True)
+        )
 
         def make_first() -> Any:  # noqa: ANN401  an outline is enough of an environment
             return outline if os.getpid() == own else first()
 
-        super().__init__([make_first, *others], copy=copy, context='fork',
-                         autoreset_mode=autoreset_mode)
+        super().__init__(
+            [make_first, *others], copy=copy, context='fork', autoreset_mode=autoreset_mode
+        )
         # A worker is as much of a Connection as AsyncVectorEnv needs.
         self.parent_pipes: list[Any] = [
             Worker(self.autoreset_mode, process, pipe, partial(self._started, index))
             for index, (process, pipe) in enumerate(
-                zip(self.processes, self.parent_pipes, strict=True))]
+                zip(self.processes, self.parent_pipes, strict=True)
+            )
+        ]
 
     def step_async(self, actions: Any) -> None:  # noqa: ANN401  an element of the space
         """Send actions to the environments.
@@ -80,9 +88,20 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
         """Start the process of an environment again."""
         ours, theirs = _FORK.Pipe()
         process = _FORK.Process(
-            target=_async_worker, daemon=True, name=f'Worker<{type(self).__name__}>-{index}',
-            args=(index, CloudpickleWrapper(self.env_fns[index]), theirs, ours,
-                  _memory(self.observations), self.error_queue, self.autoreset_mode, None))
+            target=_async_worker,
+            daemon=True,
+            name=f'Worker<{type(self).__name__}>-{index}',
+            args=(
+                index,
+                CloudpickleWrapper(self.env_fns[index]),
+                theirs,
+                ours,
+                _memory(self.observations),
+                self.error_queue,
+                self.autoreset_mode,
+                None,
+            ),
+        )
         process.start()
         theirs.close()
         self.processes[index] = cast(multiprocessing.Process, process)
@@ -170,8 +189,10 @@ def _outline(make: MakeEnv) -> _Outline:
         found: _Outline | BaseException = pickle.loads(ours.recv_bytes())
     except EOFError:
         process.join()
-        raise WorkerError('the process of the first environment ended with code '
-                          f'{process.exitcode} while it was made') from None
+        raise WorkerError(
+            'the process of the first environment ended with code '
+            f'{process.exitcode} while it was made'
+        ) from None
     finally:
         ours.close()
         process.join()
@@ -200,16 +221,21 @@ def _require(actions: Any, space: spaces.Space[Any], what: str) -> None:  # noqa
         return
     array = np.asarray(actions)
     if array.shape != space.shape or array.dtype.kind not in 'fiu':
-        raise ValueError(f'{what} are numbers of shape {space.shape}; got {array.dtype} of shape '
-                         f'{array.shape}')
+        raise ValueError(
+            f'{what} are numbers of shape {space.shape}; got {array.dtype} of shape {array.shape}'
+        )
     if not np.isfinite(array).all():
         bad = np.argwhere(~np.isfinite(array))[0].tolist()
         raise ValueError(f'{what} are finite numbers; that at {bad} is {array[tuple(bad)]}')
 
 
 def make_parallel(
-    env_class: type[SimEnv], num_envs: int = 1, *, max_episode_steps: int | None = None,
-    copy: bool = True, autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+    env_class: type[SimEnv],
+    num_envs: int = 1,
+    *,
+    max_episode_steps: int | None = None,
+    copy: bool = True,
+    autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
     **options: Any,  # noqa: ANN401
 ) -> ParallelEnv:
     """Return environments of a class in parallel; `gymnasium.make_vec` calls this for the tasks.
@@ -222,6 +248,7 @@ def make_parallel(
         autoreset_mode: see `ParallelEnv`.
         **options: arguments of the class.
     """
+
     def make() -> gymnasium.Env[Any, Any]:
         env: gymnasium.Env[Any, Any] = env_class(**options)
         return env if max_episode_steps is None else TimeLimit(env, max_episode_steps)

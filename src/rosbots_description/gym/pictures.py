@@ -33,7 +33,8 @@ class Pictures:
         away = max(1.0, (reach + _SHOWN / 2.0) / _SHOWN)
         eye = tuple(at + away * way for at, way in zip(middle, _EYE, strict=True))
         try:
-            return self._illustrator.take(look_at((eye[0], eye[1], eye[2]), middle), middle,
-                                          figures)
+            return self._illustrator.take(
+                look_at((eye[0], eye[1], eye[2]), middle), middle, figures
+            )
         except RenderError as error:
             raise SimError(f'there is no picture: {error}') from None

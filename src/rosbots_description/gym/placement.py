@@ -21,8 +21,13 @@ def move(model: Model, place: Place) -> None:
 
 
 def move_freely(
-    world: World, model: Model, floor: Collection[str], random: np.random.Generator,
-    xs: Range, ys: Range, yaws: Range = (-math.pi, math.pi),
+    world: World,
+    model: Model,
+    floor: Collection[str],
+    random: np.random.Generator,
+    xs: Range,
+    ys: Range,
+    yaws: Range = (-math.pi, math.pi),
 ) -> Place:
     """Move a model to a place, drawn uniformly, where it overlaps nothing; return the place.
 
@@ -38,5 +43,7 @@ def move_freely(
         move(model, (x, y, yaw))
         if world.overlaps(model).keys() <= set(floor):
             return x, y, yaw
-    raise SimError(f"no place is free for model '{model.name}' between x {xs[0]:g} and {xs[1]:g} "
-                   f'and y {ys[0]:g} and {ys[1]:g} m; give it more room')
+    raise SimError(
+        f"no place is free for model '{model.name}' between x {xs[0]:g} and {xs[1]:g} "
+        f'and y {ys[0]:g} and {ys[1]:g} m; give it more room'
+    )

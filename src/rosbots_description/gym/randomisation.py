@@ -41,16 +41,22 @@ class Randomisation:
         for name in _FACTORS:
             limits = getattr(self, name)
             if limits is not None and not (
-                    len(found := _numbers(limits)) == 2
-                    and 0.0 < found[0] <= found[1] <= _MAX_FACTOR):
-                self._refuse(name, 'it is a range of factors, the least and the greatest, both '
-                                   f'above 0 and at most {_MAX_FACTOR:g}')
+                len(found := _numbers(limits)) == 2 and 0.0 < found[0] <= found[1] <= _MAX_FACTOR
+            ):
+                self._refuse(
+                    name,
+                    'it is a range of factors, the least and the greatest, both '
+                    f'above 0 and at most {_MAX_FACTOR:g}',
+                )
         if not (len(shifts := _numbers(self.pose)) == 3 and _are_shifts(shifts)):
             self._refuse('pose', f'it is three shifts, numbers from 0 to {_MAX_SHIFT:g}')
         if not isinstance(self.obstacles, Mapping) or not all(
-                _are_shifts(_numbers([shift])) for shift in self.obstacles.values()):
-            self._refuse('obstacles', 'it is a dict of shifts by names of models, numbers from 0 '
-                                      f'to {_MAX_SHIFT:g}')
+            _are_shifts(_numbers([shift])) for shift in self.obstacles.values()
+        ):
+            self._refuse(
+                'obstacles',
+                f'it is a dict of shifts by names of models, numbers from 0 to {_MAX_SHIFT:g}',
+            )
 
     def _refuse(self, name: str, right: str) -> NoReturn:
         raise ValueError(f'randomisation of {name} is {getattr(self, name)!r}; {right}')
@@ -60,15 +66,19 @@ class Randomisation:
         for name in self.obstacles:
             world.model(name)
         if self.noise and not _noisy(robot):
-            raise SimError(f"no sensor of model '{robot.name}' has noise that could be multiplied; "
-                           'give one a <noise>')
+            raise SimError(
+                f"no sensor of model '{robot.name}' has noise that could be multiplied; "
+                'give one a <noise>'
+            )
 
     def apply(self, world: World, robot: Model, random: np.random.Generator) -> dict[str, Any]:
         """Change the world, which has just been restored; return what was drawn, by name."""
         world.seed = int(random.integers(1 << 63))
         drawn: dict[str, Any] = {
-            name: random.uniform(*limits) for name in _FACTORS
-            if (limits := getattr(self, name)) is not None}
+            name: random.uniform(*limits)
+            for name in _FACTORS
+            if (limits := getattr(self, name)) is not None
+        }
         if 'mass' in drawn:
             robot.scale_mass(drawn['mass'])
         if 'friction' in drawn:
@@ -78,21 +88,34 @@ class Randomisation:
             for sensor in _noisy(robot):
                 sensor.noise_scale = drawn['noise']
         if 'light' in drawn:
-            world.lights.update({
-                name: replace(light, diffuse=_brighter(light.diffuse, drawn['light']),
-                              specular=_brighter(light.specular, drawn['light']))
-                for name, light in world.lights.items()})
+            world.lights.update(
+                {
+                    name: replace(
+                        light,
+                        diffuse=_brighter(light.diffuse, drawn['light']),
+                        specular=_brighter(light.specular, drawn['light']),
+                    )
+                    for name, light in world.lights.items()
+                }
+            )
         for name, most in self.obstacles.items():
             obstacle = world.model(name)
             x, y, _ = obstacle.pose.position
-            drawn[name] = move_freely(world, obstacle, world.touching(obstacle), random,
-                                      (x - most, x + most), (y - most, y + most))
+            drawn[name] = move_freely(
+                world,
+                obstacle,
+                world.touching(obstacle),
+                random,
+                (x - most, x + most),
+                (y - most, y + most),
+            )
         if any(self.pose):
             (x, y, _), orientation = robot.pose
-            xs, ys, yaws = ((here - most, here + most) for here, most in zip(
-                (x, y, yaw_of(orientation)), self.pose, strict=True))
-            drawn['pose'] = move_freely(
-                world, robot, world.touching(robot), random, xs, ys, yaws)
+            xs, ys, yaws = (
+                (here - most, here + most)
+                for here, most in zip((x, y, yaw_of(orientation)), self.pose, strict=True)
+            )
+            drawn['pose'] = move_freely(world, robot, world.touching(robot), random, xs, ys, yaws)
         return drawn
 
 
@@ -110,8 +133,7 @@ def _are_shifts(numbers: list[float]) -> bool:
 
 
 def _noisy(robot: Model) -> list[Sensor]:
-    return [one for one in robot.sensors.values()
-            if isinstance(one, Sensor) and one.is_noisy]
+    return [one for one in robot.sensors.values() if isinstance(one, Sensor) and one.is_noisy]
 
 
 def _brighter(colour: Colour, factor: float) -> Colour:

@@ -17,5 +17,9 @@ def register_envs() -> None:
     for name, (module, steps) in _TASKS.items():
         known = f'rosbots/{name}-v0'
         if known not in registry:
-            register(known, f'{tasks}.{module}:{name}', max_episode_steps=steps,
-                     vector_entry_point=f'{tasks}.{module}:make_vec')
+            register(
+                known,
+                f'{tasks}.{module}:{name}',
+                max_episode_steps=steps,
+                vector_entry_point=f'{tasks}.{module}:make_vec',
+            )

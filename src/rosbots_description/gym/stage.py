@@ -65,7 +65,8 @@ class Stage:
     def _load_parts(self) -> None:
         given = self._setting
         self.world = World.from_file(
-            given.world, package_path=given.package_path, model_path=given.model_path)
+            given.world, package_path=given.package_path, model_path=given.model_path
+        )
         try:
             self.robot = self.world.spawn(given.robot, pose=given.pose, arguments=given.arguments)
             if given.controllers:
@@ -135,6 +136,8 @@ class Stage:
         step_ns = self.world.clock.step_ns
         steps = round(period * _NANOSECONDS / step_ns) if 0.0 < period < np.inf else 0
         if steps < 1 or abs(steps * step_ns - period * _NANOSECONDS) > 0.5:
-            raise ValueError(f'period is {period} s; it must be a multiple of the step size of the '
-                             f'world, {step_ns / _NANOSECONDS:g} s')
+            raise ValueError(
+                f'period is {period} s; it must be a multiple of the step size of the '
+                f'world, {step_ns / _NANOSECONDS:g} s'
+            )
         return steps

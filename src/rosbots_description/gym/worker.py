@@ -92,8 +92,10 @@ class Worker:
                 return self._answered()
             except (EOFError, ConnectionError):
                 continue
-        self.fault = WorkerError(f'{self.process.name} died {_MOST_RESTARTS} times in a row, each '
-                                 'time it was started again')
+        self.fault = WorkerError(
+            f'{self.process.name} died {_MOST_RESTARTS} times in a row, each '
+            'time it was started again'
+        )
         return None, False
 
     def _answered(self) -> tuple[Any, bool]:
@@ -119,11 +121,21 @@ class Worker:
     def _first_steps(self, observation: Any, info: dict[str, Any]) -> list[Any]:  # noqa: ANN401
         """Return the steps that end the episode of the worker that died, and begin the next one."""
         if self._mode == AutoresetMode.SAME_STEP:
-            return [(observation, 0.0, False, True, {
-                'final_obs': observation, 'final_info': _RESTARTED, **info, **_RESTARTED})]
+            return [
+                (
+                    observation,
+                    0.0,
+                    False,
+                    True,
+                    {'final_obs': observation, 'final_info': _RESTARTED, **info, **_RESTARTED},
+                )
+            ]
         end = (observation, 0.0, False, True, _RESTARTED)
-        return [end, (observation, 0.0, False, False, info)] \
-            if self._mode == AutoresetMode.NEXT_STEP else [end]
+        return (
+            [end, (observation, 0.0, False, False, info)]
+            if self._mode == AutoresetMode.NEXT_STEP
+            else [end]
+        )
 
     def _pass_on(self, request: tuple[str, Any]) -> None:
         with contextlib.suppress(ConnectionError):  # recv answers
@@ -135,8 +147,12 @@ class Worker:
         if self.process.is_alive():
             self.process.kill()
             self.process.join()
-        logger.warning('%s (process %s) %s; its episode is truncated, and another process takes '
-                       'its place', self.process.name, self.process.pid, self._end())
+        logger.warning(
+            '%s (process %s) %s; its episode is truncated, and another process takes its place',
+            self.process.name,
+            self.process.pid,
+            self._end(),
+        )
         self._restarts += 1
         self.process, self._pipe = self._start()
 

@@ -32,16 +32,38 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
-    'FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'ModelError', 'NotFoundError',
-    'Odometry', 'Output', 'PhysicsSettings', 'PluginError', 'Pose', 'SavedState', 'SimError',
-    'Twist', 'World', 'from_rpy', 'to_rpy', 'yaw_of',
+    'FrameTransform',
+    'Joint',
+    'JointStates',
+    'Link',
+    'Model',
+    'ModelError',
+    'NotFoundError',
+    'Odometry',
+    'Output',
+    'PhysicsSettings',
+    'PluginError',
+    'Pose',
+    'SavedState',
+    'SimError',
+    'Twist',
+    'World',
+    'from_rpy',
+    'to_rpy',
+    'yaw_of',
 ]
 
 _HOMES = {
     'description': ('PhysicsSettings',),
     'public': ('World',),
     'runtime': (
-        'FrameTransform', 'Joint', 'JointStates', 'Link', 'Model', 'Odometry', 'Output',
+        'FrameTransform',
+        'Joint',
+        'JointStates',
+        'Link',
+        'Model',
+        'Odometry',
+        'Output',
         'SavedState',
     ),
 }

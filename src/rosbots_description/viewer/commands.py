@@ -13,8 +13,10 @@ logger = logging.getLogger(__name__)
 
 Value = TypeVar('Value')
 PATIENCE = 10.0  # [s, wall] for the result of a command
-BUSY = ('the program does not run its world at the moment, so the command is dropped; '
-        'it is carried out while the program runs it')
+BUSY = (
+    'the program does not run its world at the moment, so the command is dropped; '
+    'it is carried out while the program runs it'
+)
 
 
 class WorldCommands:
@@ -59,6 +61,7 @@ class WorldCommands:
 
     def post(self, command: Callable[[], object]) -> None:
         """Have a command carried out; an error is logged."""
+
         def carry_out() -> None:
             try:
                 command()

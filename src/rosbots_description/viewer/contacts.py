@@ -25,5 +25,9 @@ class WorldContacts:
         """Call back with the contacts of the last step."""
         show = self._callback
         if show is not None:
-            show([ShownContact(one.position, one.normal, one.force)
-                  for one in self._world.engine.contacts()])
+            show(
+                [
+                    ShownContact(one.position, one.normal, one.force)
+                    for one in self._world.engine.contacts()
+                ]
+            )

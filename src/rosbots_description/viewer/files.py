@@ -20,8 +20,9 @@ class OpenedFile:
     faults: tuple[str, ...]
 
 
-def open_file(path: str | os.PathLike[str],
-              arguments: Mapping[str, str] | None = None) -> OpenedFile:
+def open_file(
+    path: str | os.PathLike[str], arguments: Mapping[str, str] | None = None
+) -> OpenedFile:
     """Open a world with the model of a URDF, xacro or SDF file, or the world of a world file.
 
     A model stands on a ground plane, its lowest point at z = 0, unless it is fixed to the world.
@@ -64,4 +65,5 @@ def _is_world(path: str) -> bool:
         return True
     text = read_file(path, MAX_XML_BYTES, 'model file')
     return root_tag(text) in ('sdf', 'gazebo') and any(
-        child.tag == 'world' for child in parse_xml(text, path))
+        child.tag == 'world' for child in parse_xml(text, path)
+    )

@@ -46,6 +46,7 @@ class WorldHands:
 
     def delete(self, name: str) -> None:
         """Delete a model, else the light of that name."""
+
         def delete() -> None:
             if name not in self._world.models and name in self._world.lights:
                 del self._world.lights[name]
@@ -56,11 +57,15 @@ class WorldHands:
 
     def describe(self, name: str) -> ModelText:
         """Return what is needed to spawn a model again as it is."""
+
         def describe() -> ModelText:
             model = self._world.model(name)
             return ModelText(
-                name, copy_of_model(model.spec), pose=model.pose,
-                joints={joint.name: joint.position for joint in model.joints.values()})
+                name,
+                copy_of_model(model.spec),
+                pose=model.pose,
+                joints={joint.name: joint.position for joint in model.joints.values()},
+            )
 
         return self._commands.call(describe)
 
@@ -84,8 +89,9 @@ class WorldHands:
 
         self._commands.call(hold)
 
-    def push(self, link: str, force: Vector, torque: Vector, duration: float,
-             own_axes: bool) -> None:
+    def push(
+        self, link: str, force: Vector, torque: Vector, duration: float, own_axes: bool
+    ) -> None:
         """Apply a force [N] at the centre of mass of a link, and a torque [N m]."""
         if not 0.0 <= duration < math.inf:  # neither for NaN
             raise SimError(f'a push lasts at least 0 s, not {duration:g} s')
@@ -95,8 +101,11 @@ class WorldHands:
             found = self._world.model(model).link(name)
             turn = found.pose.orientation
             self._world.apply_wrench(
-                found, rotate(turn, force) if own_axes else force,
-                rotate(turn, torque) if own_axes else torque, seconds=duration)
+                found,
+                rotate(turn, force) if own_axes else force,
+                rotate(turn, torque) if own_axes else torque,
+                seconds=duration,
+            )
 
         self._commands.call(push)
 

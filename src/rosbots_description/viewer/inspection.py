@@ -14,11 +14,13 @@ class WorldInspection:
     def __init__(self, world: World, commands: WorldCommands) -> None:
         self._world, self._commands = world, commands
 
-    def state(self, model: str, link: str | None,
-              patience: float | None = None) -> tuple[Pose, Twist]:
+    def state(
+        self, model: str, link: str | None, patience: float | None = None
+    ) -> tuple[Pose, Twist]:
         """Return pose and velocity in the world; `patience` is for the answer [s, wall]."""
         return self._commands.call(
-            lambda: self._part(model, link).state(), PATIENCE if patience is None else patience)
+            lambda: self._part(model, link).state(), PATIENCE if patience is None else patience
+        )
 
     def omissions(self, model: str) -> list[str]:
         """Return the parts that a model was spawned without, each in a few words."""
@@ -26,6 +28,7 @@ class WorldInspection:
 
     def set_state(self, model: str, link: str | None, pose: Pose, twist: Twist) -> None:
         """Set pose and velocity in the world."""
+
         def change() -> None:
             part = self._part(model, link)
             if isinstance(part, Link):
@@ -39,6 +42,7 @@ class WorldInspection:
 
     def set_mass(self, model: str, link: str, mass: float, gravity: bool) -> None:
         """Set a link's mass [kg], its inertia in proportion, and whether gravity acts on it."""
+
         def change() -> None:
             part = self._world.model(model).link(link)
             now = part.spec.inertial
@@ -66,6 +70,11 @@ def omissions(world: World, name: str) -> list[str]:
 def scaled(inertial: Inertial, mass: float) -> Inertial:
     """Return an inertial of another mass [kg], its moments in proportion."""
     factor = mass / inertial.mass if inertial.mass else 1.0
-    return replace(inertial, mass=mass, **{
-        name: factor * getattr(inertial, name)
-        for name in ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')})
+    return replace(
+        inertial,
+        mass=mass,
+        **{
+            name: factor * getattr(inertial, name)
+            for name in ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
+        },
+    )

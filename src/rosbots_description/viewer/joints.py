@@ -17,8 +17,7 @@ from ..sim.description import CommandTopic
 from .commands import WorldCommands
 
 _OF_ONE = JointCommandController, JointPositionController, JointVelocityController
-_OF_SEVERAL = (JointGroupCommandController, JointGroupPositionController,
-               JointTrajectoryController)
+_OF_SEVERAL = (JointGroupCommandController, JointGroupPositionController, JointTrajectoryController)
 POSITIONS = 'Position', 'Trajectory'  # in the types of controllers whose commands are positions
 
 
@@ -42,6 +41,7 @@ class WorldJoints:
 
     def set_effort(self, model: str, joint: str, effort: float) -> None:
         """Apply an effort [N m or N] from now on, in place of the last one."""
+
         def apply() -> None:
             found = self._joint(model, joint)
             self._world.clear_forces(found)
@@ -78,5 +78,4 @@ def _topic(name: str, controller: Controller) -> CommandTopic:
     if isinstance(controller, _OF_ONE):
         return CommandTopic(name)
     joints = tuple(joint.name for joint in controller.joints)  # type: ignore[attr-defined]  # each kind has it
-    return CommandTopic(
-        name, joints, any(word in type(controller).__name__ for word in POSITIONS))
+    return CommandTopic(name, joints, any(word in type(controller).__name__ for word in POSITIONS))

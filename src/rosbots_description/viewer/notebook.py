@@ -52,7 +52,8 @@ class ShownViewer(Viewer):
             'const name = ["localhost", "127.0.0.1"].includes(location.hostname)'
             ' ? location.hostname : "127.0.0.1";'
             f'frame.src = {json.dumps(self.address)}.replace("127.0.0.1", name);'
-            '})()</script>')
+            '})()</script>'
+        )
 
 
 class Turns:

@@ -52,8 +52,9 @@ class Pace:
             self.factor = factor
             self.changed.notify_all()
 
-    def allowed(self, steps: int, timeout: float,
-                is_disturbed: Callable[[], bool] = lambda: False) -> int:
+    def allowed(
+        self, steps: int, timeout: float, is_disturbed: Callable[[], bool] = lambda: False
+    ) -> int:
         """Return how many of so many steps may be made now; wait for the first for a while.
 
         Args:
@@ -62,8 +63,7 @@ class Pace:
             is_disturbed: ends the waiting; asked when `changed` is notified.
         """
         with self.changed:
-            self.changed.wait_for(
-                lambda: self.steps or not self.paused or is_disturbed(), timeout)
+            self.changed.wait_for(lambda: self.steps or not self.paused or is_disturbed(), timeout)
             if not self.paused:
                 self.steps = 0
                 return steps
@@ -93,5 +93,8 @@ class WorldPace(Pace):
         """Set the target real-time factor, also in the world; 0: as fast as possible."""
         super().set_speed(factor)
         world = self._world
-        self.commands.post(lambda: world.set_physics(replace(
-            world.physics, max_update_rate=factor / world.physics.step_size)))
+        self.commands.post(
+            lambda: world.set_physics(
+                replace(world.physics, max_update_rate=factor / world.physics.step_size)
+            )
+        )

@@ -42,8 +42,12 @@ class Recording(Hook):
         """Return the recording."""
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
-                 trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """End it."""
         self.close()
 
@@ -79,8 +83,9 @@ class Recording(Hook):
             SimError: the recording is not closed, or the file cannot be written.
         """
         if self._is_open:
-            raise SimError('this recording is not over; close it first, or use it in a with '
-                           'statement')
+            raise SimError(
+                'this recording is not over; close it first, or use it in a with statement'
+            )
         try:
             Path(path).write_bytes(self.html)
         except OSError as error:
@@ -91,8 +96,10 @@ class Recording(Hook):
         if self._is_open:
             return '<p>This recording is not over.</p>'
         content = html.escape(self.html.decode('utf-8'))
-        return (f'<iframe srcdoc="{content}" width="100%" height="{HEIGHT}" '
-                'style="border:0" sandbox="allow-scripts"></iframe>')
+        return (
+            f'<iframe srcdoc="{content}" width="100%" height="{HEIGHT}" '
+            'style="border:0" sandbox="allow-scripts"></iframe>'
+        )
 
     def _record(self) -> None:
         change = self._shown.change()

@@ -18,6 +18,7 @@ class WorldRobots:
 
     def drive(self, topic: str, forward: float, left: float) -> None:
         """Send a command: forward [m/s], and turning left [rad/s]."""
+
         def command() -> None:
             drive = self._drives().get(topic)
             if drive is not None:  # its model is not deleted

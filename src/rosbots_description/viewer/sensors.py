@@ -55,10 +55,12 @@ class WorldSensors:
         return (link, sensor.spec.pose) if link in links else None
 
     def _sensors(self) -> dict[str, Sensor]:
-        return {sensor.scoped_name.replace('::', '/'): sensor
-                for model in tuple(self._world.models.values())
-                for sensor in tuple(model.sensors.values())
-                if isinstance(sensor, Sensor) and sensor.measures}
+        return {
+            sensor.scoped_name.replace('::', '/'): sensor
+            for model in tuple(self._world.models.values())
+            for sensor in tuple(model.sensors.values())
+            if isinstance(sensor, Sensor) and sensor.measures
+        }
 
 
 class _Reader:

@@ -65,7 +65,8 @@ class Viewer(Window):
         self._begin_frame()
         slow = min(self.time.factor or 1.0, 1.0)  # so that commands never wait for long
         allowed = self.time.allowed(
-            max(1, int(slow * self._frame)), FRAME, lambda: self.commands.are_waiting)
+            max(1, int(slow * self._frame)), FRAME, lambda: self.commands.are_waiting
+        )
         self._wait(self._advance(allowed) * self._world.physics.step_size)
         self._show()
 

@@ -18,8 +18,10 @@ class WorldFiles:
         """Return the world as it stands as a world file, and a sentence about it."""
         spec = self._commands.call(lambda: describe(self._world))
         missing = f'; not in it: {"; ".join(spec.faults)}' if spec.faults else ''
-        return (sdf_of_world(spec),
-                f'{len(spec.models)} models as they are at {spec.time:.3f} s{missing}')
+        return (
+            sdf_of_world(spec),
+            f'{len(spec.models)} models as they are at {spec.time:.3f} s{missing}',
+        )
 
 
 class WorldLibrary:
@@ -55,8 +57,10 @@ class WorldLibrary:
             SimError: it is xacro, too large, or not text.
         """
         if name.lower().endswith('.xacro'):
-            raise SimError(f"'{name}' is xacro, which can run code, so it is not taken from a "
-                           'browser here; open it by rosbots-view, or upload its URDF')
+            raise SimError(
+                f"'{name}' is xacro, which can run code, so it is not taken from a "
+                'browser here; open it by rosbots-view, or upload its URDF'
+            )
         return ModelText('', text_of_upload(name, content, 'URDF or SDF'))
 
     def shape(self, spec: ModelSpec) -> ModelText:

@@ -17,6 +17,21 @@ from .take_away import Worlds
 from .topics import ShownTopics
 
 __all__ = [
-    'LOOPBACK', 'Contacts', 'Goals', 'Hands', 'Inspection', 'Joints', 'Library', 'Maps', 'Page',
-    'Recorder', 'Robots', 'ShownTopics', 'Signals', 'Simulator', 'Site', 'WindowError', 'Worlds',
+    'LOOPBACK',
+    'Contacts',
+    'Goals',
+    'Hands',
+    'Inspection',
+    'Joints',
+    'Library',
+    'Maps',
+    'Page',
+    'Recorder',
+    'Robots',
+    'ShownTopics',
+    'Signals',
+    'Simulator',
+    'Site',
+    'WindowError',
+    'Worlds',
 ]

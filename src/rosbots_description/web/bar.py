@@ -47,9 +47,11 @@ class Bar(Panel):
         self._play = gui.add_button('Pause', icon=viser.Icon.PLAYER_PAUSE)
         self._step = gui.add_button('Step', icon=viser.Icon.PLAYER_TRACK_NEXT)
         self._steps = gui.add_number(
-            'Steps', 1, min=1, max=1_000_000, step=1, hint='number of steps that Step makes')
+            'Steps', 1, min=1, max=1_000_000, step=1, hint='number of steps that Step makes'
+        )
         self._speed = gui.add_dropdown(
-            'Speed', list(SPEEDS), initial_value='1x', hint='speed: target real-time factor')
+            'Speed', list(SPEEDS), initial_value='1x', hint='speed: target real-time factor'
+        )
         self._reset_world = gui.add_button('Reset world', icon=viser.Icon.RELOAD)
         self._reset = gui.add_button('Reset time and world', icon=viser.Icon.PLAYER_SKIP_BACK)
         self._paused = False
@@ -67,7 +69,8 @@ class Bar(Panel):
         if factor != self._target:
             self._target = factor
             name = next(
-                (name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None)
+                (name for name, speed in SPEEDS.items() if abs(speed - factor) < 1e-9), None
+            )
             if name is not None:
                 fill(self._speed, name)
 
@@ -76,8 +79,7 @@ class Bar(Panel):
         if motion.paused != self._paused:
             self._paused = motion.paused
             self._play.label = 'Play' if motion.paused else 'Pause'
-            self._play.icon = (
-                viser.Icon.PLAYER_PLAY if motion.paused else viser.Icon.PLAYER_PAUSE)
+            self._play.icon = viser.Icon.PLAYER_PLAY if motion.paused else viser.Icon.PLAYER_PAUSE
 
     def warn(self, sentence: str) -> None:
         """Show a sentence above the bar until it is withdrawn with ''."""

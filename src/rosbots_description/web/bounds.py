@@ -20,6 +20,7 @@ def corners(visuals: Iterable[Visual], link: Pose = IDENTITY) -> list[Vector]:
             ends = rough_extent(visual.geometry, IDENTITY)
             if ends is not None:
                 place = compose(link, visual.pose)
-                found += [compose(place, Pose(corner)).position
-                          for corner in product(*ends.T.tolist())]
+                found += [
+                    compose(place, Pose(corner)).position for corner in product(*ends.T.tolist())
+                ]
     return found

@@ -39,8 +39,13 @@ class ChangePanel(Panel):
     """Fields with the numbers as they were when it was selected, and buttons that set them."""
 
     def __init__(
-        self, gui: viser.GuiApi, inspection: Inspection, models: Models, selection: Selection,
-        history: History, complain: Callable[[str], None],
+        self,
+        gui: viser.GuiApi,
+        inspection: Inspection,
+        models: Models,
+        selection: Selection,
+        history: History,
+        complain: Callable[[str], None],
     ) -> None:
         self._inspection, self._history, self._complain = inspection, history, complain
         self._models, self._selection = models, selection
@@ -57,8 +62,9 @@ class ChangePanel(Panel):
                 self._button(gui, 'Set velocity', self._set_velocity)
             self._body = gui.add_folder(None)
             with self._body:
-                self._mass = gui.add_number('Mass [kg]', 1.0, step=STEP,
-                                            hint='the inertia changes in proportion')
+                self._mass = gui.add_number(
+                    'Mass [kg]', 1.0, step=STEP, hint='the inertia changes in proportion'
+                )
                 self._gravity = gui.add_checkbox('Gravity', True)
                 self._button(gui, 'Set mass', self._set_mass)
             self._surface = gui.add_folder(None)
@@ -128,28 +134,39 @@ class ChangePanel(Panel):
         twist = Twist(self._linear.value, self._angular.value)
         self._set_state(model.name, link, 'velocity', None, twist)
 
-    def _set_state(self, model: str, link: str | None, what: str, pose: Pose | None,
-                   twist: Twist | None) -> None:
+    def _set_state(
+        self, model: str, link: str | None, what: str, pose: Pose | None, twist: Twist | None
+    ) -> None:
         """Set pose or velocity; the other stays."""
         before = self._inspection.state(model, link)
         self._inspection.set_state(model, link, pose or before[0], twist or before[1])
-        self._history.add(f"{what} of '{scoped_name(model, link)}'",
-                          partial(self._inspection.set_state, model, link, *before))
+        self._history.add(
+            f"{what} of '{scoped_name(model, link)}'",
+            partial(self._inspection.set_state, model, link, *before),
+        )
 
     def _set_mass(self, model: ShownModel, link: str | None) -> None:
         body = _only_link(model, link)
         if body is not None and body.inertial is not None:
             self._note(self._mass, self._gravity)
-            self._inspection.set_mass(
-                model.name, body.name, self._mass.value, self._gravity.value)
+            self._inspection.set_mass(model.name, body.name, self._mass.value, self._gravity.value)
             self._history.add(
                 f"mass of '{scoped_name(model.name, body.name)}'",
-                partial(self._inspection.set_mass, model.name, body.name, body.inertial.mass,
-                        body.gravity))
+                partial(
+                    self._inspection.set_mass,
+                    model.name,
+                    body.name,
+                    body.inertial.mass,
+                    body.gravity,
+                ),
+            )
 
     def _set_friction(self, model: ShownModel, link: str | None) -> None:
-        before = [(scoped_name(model.name, part.name, one.name), one.surface.mu, one.surface.mu2)
-                  for part in chosen_links(model, link) for one in part.collisions]
+        before = [
+            (scoped_name(model.name, part.name, one.name), one.surface.mu, one.surface.mu2)
+            for part in chosen_links(model, link)
+            for one in part.collisions
+        ]
 
         def undo() -> None:
             for one in before:

@@ -51,12 +51,11 @@ class Chart:
     def table(self, now: float) -> tuple[NDArray[np.float64], ...]:
         """Return times [s] up to now, and the newest value of each curve at each; NaN for none."""
         columns = np.arange(math.ceil((now - WINDOW) / STEP), math.floor(now / STEP) + 1)
-        times = STEP * columns[max(0, -int(columns[0])):]
+        times = STEP * columns[max(0, -int(columns[0])) :]
         return times, *(_values(samples, times) for samples in self._curves.values())
 
 
-def _values(samples: deque[tuple[float, float]],
-            times: NDArray[np.float64]) -> NDArray[np.float64]:
+def _values(samples: deque[tuple[float, float]], times: NDArray[np.float64]) -> NDArray[np.float64]:
     if not samples:
         return np.full(len(times), math.nan)
     taken, values = np.array(samples).T

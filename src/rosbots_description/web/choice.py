@@ -13,8 +13,9 @@ NUMBER = 12  # characters that tell texts apart that would be alike
 class Choice:
     """Shows each name as a text on the page, no two alike; what is chosen is the name."""
 
-    def __init__(self, gui: viser.GuiApi, label: str, names: Sequence[str],
-                 hint: str | None = None) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, label: str, names: Sequence[str], hint: str | None = None
+    ) -> None:
         self._names = _by_text(names)
         self._dropdown = gui.add_dropdown(label, tuple(self._names), hint=hint)
 

@@ -19,11 +19,20 @@ MAX_TEXT = 1000  # characters of a text
 MAX_NUMBER = 1e9  # of the scene [m], a number of a camera or a ray
 MAX_PICTURE = 8192  # [pixels] of a side
 KINDS = (
-    'ViewerCameraMessage', 'GuiUpdateMessage', 'GuiButtonHoldMessage', 'CommandTriggerMessage',
-    'SceneNodeClickMessage', 'SceneNodeDragMessage', 'ScenePointerMessage',
-    'TransformControlsUpdateMessage', 'TransformControlsDragStartMessage',
-    'TransformControlsDragEndMessage', 'GetRenderResponseMessage', 'FileTransferStartUpload',
-    'FileTransferPart', 'FileTransferPartAck',
+    'ViewerCameraMessage',
+    'GuiUpdateMessage',
+    'GuiButtonHoldMessage',
+    'CommandTriggerMessage',
+    'SceneNodeClickMessage',
+    'SceneNodeDragMessage',
+    'ScenePointerMessage',
+    'TransformControlsUpdateMessage',
+    'TransformControlsDragStartMessage',
+    'TransformControlsDragEndMessage',
+    'GetRenderResponseMessage',
+    'FileTransferStartUpload',
+    'FileTransferPart',
+    'FileTransferPartAck',
 )
 
 
@@ -39,13 +48,16 @@ def _struct(kind: str) -> type[msgspec.Struct]:
     message = getattr(_messages, kind)
     hints = get_type_hints_cached(message)
     return msgspec.defstruct(
-        kind, [(name, hints[name]) for name in wire_field_names(message)], tag_field='type',
-        tag=kind, forbid_unknown_fields=True)
+        kind,
+        [(name, hints[name]) for name in wire_field_names(message)],
+        tag_field='type',
+        tag=kind,
+        forbid_unknown_fields=True,
+    )
 
 
 _STRUCTS = {kind: _struct(kind) for kind in KINDS}
-_DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(
-    Union[tuple(_STRUCTS.values())])  # noqa: UP007  of as many as there are
+_DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(Union[tuple(_STRUCTS.values())])  # noqa: UP007  of as many as there are
 
 
 def read(raw: object) -> Any:  # noqa: ANN401  one of `_STRUCTS`
@@ -75,8 +87,10 @@ def read(raw: object) -> Any:  # noqa: ANN401  one of `_STRUCTS`
     if kind == 'ViewerCameraMessage':
         _check_camera(message)
     elif kind != 'GuiUpdateMessage':
-        _check_numbers(_numbers(getattr(message, name) for name in message.__struct_fields__),
-                       f'{kind} of this browser')
+        _check_numbers(
+            _numbers(getattr(message, name) for name in message.__struct_fields__),
+            f'{kind} of this browser',
+        )
     return message
 
 
@@ -104,8 +118,7 @@ def check_value(control: Any, value: object) -> None:  # noqa: ANN401  any of vi
 def _is_like(value: object, now: object) -> bool:
     """Return whether a value has the type of the present one; viser casts numbers."""
     if isinstance(now, tuple):
-        return (isinstance(value, list) and len(value) == len(now)
-                and all(map(_is_number, value)))
+        return isinstance(value, list) and len(value) == len(now) and all(map(_is_number, value))
     if _is_number(now):
         return _is_number(value)
     return isinstance(now, bool | str) and isinstance(value, type(now))
@@ -136,16 +149,19 @@ def _numbers(values: Iterable[object]) -> Iterable[float]:
 
 def _check_numbers(numbers: Iterable[float], what: str) -> None:
     if not all(abs(number) <= MAX_NUMBER for number in numbers):  # neither for NaN
-        raise RefusedError(f'{what} has a number that is not finite, or greater than '
-                           f'{MAX_NUMBER:g}; it is ignored')
+        raise RefusedError(
+            f'{what} has a number that is not finite, or greater than {MAX_NUMBER:g}; it is ignored'
+        )
 
 
 def _check_camera(camera: Any) -> None:  # noqa: ANN401  a struct
     what = 'The camera of this browser'
     _check_numbers(_numbers(getattr(camera, name) for name in camera.__struct_fields__), what)
     directions: Sequence[Sequence[float]] = (
-        camera.wxyz, camera.up_direction,
-        [a - b for a, b in zip(camera.look_at, camera.position, strict=True)])
+        camera.wxyz,
+        camera.up_direction,
+        [a - b for a, b in zip(camera.look_at, camera.position, strict=True)],
+    )
     if any(math.hypot(*one) < 1e-9 for one in directions):
         raise RefusedError(f'{what} looks in no direction; it is ignored')
     if not (0.0 < camera.fov < math.pi and 0.0 < camera.near < camera.far):
@@ -159,8 +175,7 @@ def _check_picture(content: bytes) -> None:
     try:
         with Image.open(io.BytesIO(content), formats=('JPEG', 'PNG')) as picture:
             size = picture.size
-    except (UnidentifiedImageError, OSError, ValueError, SyntaxError,
-            Image.DecompressionBombError):
+    except (UnidentifiedImageError, OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         raise MalformedError('This is no picture.') from None
     if max(size) > MAX_PICTURE:
         raise MalformedError(f'A picture has at most {MAX_PICTURE} pixels at a side.')

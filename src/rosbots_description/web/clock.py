@@ -27,9 +27,14 @@ class Clock(Panel):
             return
         self._shown = motion.real_time
         pace = 'paused' if motion.paused else f'{factor:.2f}\u00d7'
-        self._html.content = _content(_time(motion.time), pace, (
-            f'simulated time, and real-time factor; real time {_time(motion.real_time)}, '
-            f'{motion.iterations} iterations'))
+        self._html.content = _content(
+            _time(motion.time),
+            pace,
+            (
+                f'simulated time, and real-time factor; real time {_time(motion.real_time)}, '
+                f'{motion.iterations} iterations'
+            ),
+        )
 
     def _factor(self, motion: ShownMotion) -> float:
         """Return the real-time factor of the last second."""
@@ -44,8 +49,10 @@ class Clock(Panel):
 
 
 def _content(time: str, pace: str, more: str) -> str:
-    return (f'<div class="words clock" style="{STYLE}; padding: 0" title="{markup(more)}">'
-            f'<b>{markup(time)}</b>&ensp;{markup(pace)}</div>')
+    return (
+        f'<div class="words clock" style="{STYLE}; padding: 0" title="{markup(more)}">'
+        f'<b>{markup(time)}</b>&ensp;{markup(pace)}</div>'
+    )
 
 
 def _time(seconds: float) -> str:

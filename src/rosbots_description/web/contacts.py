@@ -29,16 +29,18 @@ class Contacts(Protocol):
 class ContactsPanel(Panel):
     """Points, and lines as long as the forces on what touches from above."""
 
-    def __init__(
-        self, site: viser.ViserServer, contacts: Contacts, lock: threading.RLock
-    ) -> None:
+    def __init__(self, site: viser.ViserServer, contacts: Contacts, lock: threading.RLock) -> None:
         self._site, self._contacts, self._lock = site, contacts, lock
         self._looked_at = self._is_open = self._is_scaled = False
         self._nodes: tuple[viser.PointCloudHandle, viser.LineSegmentsHandle] | None = None
         self._box = site.gui.add_checkbox('Contacts and forces', False)
         self._scale = site.gui.add_number(
-            'Force per metre [N]', 1.0, min=0.001, step=0.001,
-            hint='a force as large as this is shown as a line of 1 m')
+            'Force per metre [N]',
+            1.0,
+            min=0.001,
+            step=0.001,
+            hint='a force as large as this is shown as a line of 1 m',
+        )
         self._box.on_update(lambda _: self._switch())
 
     def open(self) -> None:
@@ -92,9 +94,17 @@ class ContactsPanel(Panel):
             if self._nodes is None:
                 scene = self._site.scene
                 self._nodes = (
-                    scene.add_point_cloud('/contacts/points', points, POINT, point_size=SIZE,
-                                          point_shape='circle', precision='float32'),
-                    scene.add_line_segments('/contacts/forces', lines, FORCE, thickness=WIDTH,
-                                            thickness_units='screen'))
+                    scene.add_point_cloud(
+                        '/contacts/points',
+                        points,
+                        POINT,
+                        point_size=SIZE,
+                        point_shape='circle',
+                        precision='float32',
+                    ),
+                    scene.add_line_segments(
+                        '/contacts/forces', lines, FORCE, thickness=WIDTH, thickness_units='screen'
+                    ),
+                )
             else:
                 self._nodes[0].points, self._nodes[1].points = points, lines

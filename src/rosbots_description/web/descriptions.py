@@ -35,19 +35,21 @@ def friction(links: Iterable[ShownLink]) -> set[tuple[float, float]]:
     return {(one.surface.mu, one.surface.mu2) for link in links for one in link.collisions}
 
 
-def state_html(
-    model: ShownModel, link: str | None, pose: Pose, twist: Twist | None
-) -> str:
+def state_html(model: ShownModel, link: str | None, pose: Pose, twist: Twist | None) -> str:
     """Return a table of the state [m, rad, m/s, rad/s] and the mass properties."""
     links = chosen_links(model, link)
-    rows = [('Position [m]', _three(pose.position)),
-            ('Roll, pitch, yaw [rad]', _three(to_rpy(pose.orientation)))]
+    rows = [
+        ('Position [m]', _three(pose.position)),
+        ('Roll, pitch, yaw [rad]', _three(to_rpy(pose.orientation))),
+    ]
     if model.static:
         rows.append(('Mass [kg]', 'static'))
     else:
-        rows += [('Velocity [m/s]', _three(twist.linear) if twist else ''),
-                 ('Turning [rad/s]', _three(twist.angular) if twist else ''),
-                 ('Mass [kg]', f'{sum(one.inertial.mass for one in links if one.inertial):.4g}')]
+        rows += [
+            ('Velocity [m/s]', _three(twist.linear) if twist else ''),
+            ('Turning [rad/s]', _three(twist.angular) if twist else ''),
+            ('Mass [kg]', f'{sum(one.inertial.mass for one in links if one.inertial):.4g}'),
+        ]
     pairs = friction(links)
     if len(pairs) == 1:
         ((mu, mu2),) = pairs
@@ -69,8 +71,14 @@ def parts_html(model: ShownModel, link: str | None, omissions: Sequence[str] = (
     collisions = [_collision(one) for part in links for one in part.collisions]
     sensors = [f'{markup(one.name)}: {markup(one.type)}' for part in links for one in part.sensors]
     missing = [markup(one) for one in omissions]
-    return ''.join((_list('Spawned without', missing), _list('Joints', joints),
-                    _list('Collisions', collisions), _list('Sensors', sensors)))
+    return ''.join(
+        (
+            _list('Spawned without', missing),
+            _list('Joints', joints),
+            _list('Collisions', collisions),
+            _list('Sensors', sensors),
+        )
+    )
 
 
 def _list(title: str, entries: Sequence[str]) -> str:
@@ -79,22 +87,28 @@ def _list(title: str, entries: Sequence[str]) -> str:
     shown = ''.join(f'<li>{entry}</li>' for entry in entries[:MOST])
     if len(entries) > MOST:
         shown += f'<li>and {len(entries) - MOST} more</li>'
-    return (f'<details style="{STYLE}"><summary>{title} ({len(entries)})</summary>'
-            f'<ul>{shown}</ul></details>')
+    return (
+        f'<details style="{STYLE}"><summary>{title} ({len(entries)})</summary>'
+        f'<ul>{shown}</ul></details>'
+    )
 
 
 def _joint(joint: JointSpec) -> str:
     limits = ''
     if joint.lower is not None and joint.upper is not None:
         limits = f', {joint.lower:.4g} to {joint.upper:.4g}'
-    return (f'{markup(joint.name)}: {markup(joint.type)}{limits}, '
-            f'{markup(joint.parent)} \u2192 {markup(joint.child)}')
+    return (
+        f'{markup(joint.name)}: {markup(joint.type)}{limits}, '
+        f'{markup(joint.parent)} \u2192 {markup(joint.child)}'
+    )
 
 
 def _collision(collision: Collision) -> str:
     surface = collision.surface
-    return (f'{markup(collision.name)}: {_shape(collision.geometry)}, '
-            f'mu {surface.mu:.4g}, mu2 {surface.mu2:.4g}')
+    return (
+        f'{markup(collision.name)}: {_shape(collision.geometry)}, '
+        f'mu {surface.mu:.4g}, mu2 {surface.mu2:.4g}'
+    )
 
 
 def _shape(geometry: Geometry) -> str:

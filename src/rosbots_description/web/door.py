@@ -62,14 +62,16 @@ class Pass:
         """Tell whether a path begins with that of this pass."""
         first = path.removeprefix('/').partition('/')[0]
         return path.startswith('/') and hmac.compare_digest(
-            first.encode(errors='replace'), self.path.encode())
+            first.encode(errors='replace'), self.path.encode()
+        )
 
 
 class Door:
     """Decides which requests are let in, and which of the connections may control."""
 
-    def __init__(self, host: str, port: int, token: str, viewing_token: str,
-                 headers: dict[str, str]) -> None:
+    def __init__(
+        self, host: str, port: int, token: str, viewing_token: str, headers: dict[str, str]
+    ) -> None:
         """Make the door of a server.
 
         Args:
@@ -79,12 +81,18 @@ class Door:
             headers: of every response.
         """
         self._host, self._headers = host, headers
-        self._passes = [Pass(value, may_control, f'rosbots_{called}_{port}')
-                        for value, may_control, called in (
-            (token, True, 'window'), (viewing_token, False, 'viewing')) if value]
+        self._passes = [
+            Pass(value, may_control, f'rosbots_{called}_{port}')
+            for value, may_control, called in (
+                (token, True, 'window'),
+                (viewing_token, False, 'viewing'),
+            )
+            if value
+        ]
 
     def guarding(self, process: Process) -> Process:
         """Return `process` for those requests only that are let in."""
+
         def guarded(connection: ServerConnection, request: Request) -> Response | None:
             try:
                 response = self._answer(connection, request, process)
@@ -94,10 +102,12 @@ class Door:
                 for name, value in self._headers.items():
                     response.headers[name] = value
             return response
+
         return guarded
 
-    def _answer(self, connection: ServerConnection, request: Request,
-                process: Process) -> Response | None:
+    def _answer(
+        self, connection: ServerConnection, request: Request, process: Process
+    ) -> Response | None:
         reason = self._refusal(request.headers)
         if reason:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f'{reason}\n')
@@ -106,8 +116,14 @@ class Door:
         url = urlsplit(request.path)
         shown = next((one for one in self._passes if _has_token(one, url.query)), None)
         if request.headers.get('Upgrade', '').lower() == 'websocket':
-            shown = shown or next((one for one in self._passes if one.is_inside(url.path)
-                                   and self._has_cookie(one, request.headers)), None)
+            shown = shown or next(
+                (
+                    one
+                    for one in self._passes
+                    if one.is_inside(url.path) and self._has_cookie(one, request.headers)
+                ),
+                None,
+            )
             if shown is None:
                 return connection.respond(http.HTTPStatus.FORBIDDEN, f'{NO_TOKEN}\n')
             return self._process(connection, request, process, may_control=shown.may_control)
@@ -117,20 +133,23 @@ class Door:
             inner = url.path.removeprefix(f'/{inside.path}') or '/'
             response = process(connection, replace(request, path=inner))
         elif shown is not None:
-            rest = urlencode([(name, value) for name, value in parse_qsl(url.query, True)
-                              if name != 'token'])
+            rest = urlencode(
+                [(name, value) for name, value in parse_qsl(url.query, True) if name != 'token']
+            )
             response = connection.respond(http.HTTPStatus.SEE_OTHER, '')
             response.headers['Location'] = f'/{shown.path}/' + (f'?{rest}' if rest else '')
         else:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f'{NO_TOKEN}\n')
         if response is not None and shown is not None:
             response.headers['Set-Cookie'] = (
-                f'{shown.cookie}={shown.token}; Path=/{shown.path}; HttpOnly; SameSite=Strict')
+                f'{shown.cookie}={shown.token}; Path=/{shown.path}; HttpOnly; SameSite=Strict'
+            )
         return response
 
     @staticmethod
-    def _process(connection: ServerConnection, request: Request, process: Process, *,
-                 may_control: bool) -> Response | None:
+    def _process(
+        connection: ServerConnection, request: Request, process: Process, *, may_control: bool
+    ) -> Response | None:
         """Let a request in; a connection that is not told otherwise may only look."""
         if may_control:
             setattr(connection, CONTROLS, True)

@@ -59,18 +59,22 @@ class DrivePanel(Panel):
             self._topic = Choice(gui, 'Topic', [''])
             self._speed = gui.add_slider('Speed [m/s]', 0.05, 3.0, 0.05, 0.5)
             self._turn = gui.add_slider('Turn [rad/s]', 0.1, 4.0, 0.1, 1.0)
-            self._keys = gui.add_checkbox('W A S D and arrows drive', initial_value=True,
-                                          hint='else they move the camera')
+            self._keys = gui.add_checkbox(
+                'W A S D and arrows drive', initial_value=True, hint='else they move the camera'
+            )
             gui.add_html(PAD)  # last in the folder: a cross of the directions
             for name, (ahead, left, key) in DIRECTIONS.items():
                 button = gui.add_button(name, hint=f'hold; or hold the key {key}')
                 button.on_hold(partial(self._command, ahead, left))
         for name, (ahead, left, key) in (DIRECTIONS | CURVES).items():
             gui.add_command(f'{name} ({key})', hotkey=key).on_trigger(
-                partial(self._command, ahead, left))
+                partial(self._command, ahead, left)
+            )
         self._commands = [
             gui.add_command(f'{name} ({key})', hotkey=key, disabled=True)
-            for name, keys in CAMERA_KEYS.items() for key in keys]
+            for name, keys in CAMERA_KEYS.items()
+            for key in keys
+        ]
         for command in self._commands:
             ahead, left, _ = DIRECTIONS[command.label.split()[0]]
             command.on_trigger(partial(self._command, ahead, left))
@@ -97,7 +101,8 @@ class DrivePanel(Panel):
             self._robots.drive(topic, ahead * self._speed.value, left * self._turn.value)
             if ahead or left:
                 end = self._ends[topic] = threading.Timer(
-                    HOLD, self._robots.drive, (topic, 0.0, 0.0))
+                    HOLD, self._robots.drive, (topic, 0.0, 0.0)
+                )
                 end.daemon = True
                 end.start()
 

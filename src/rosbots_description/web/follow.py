@@ -27,7 +27,8 @@ class FollowPanel(Panel):
         self._button = site.gui.add_button(FOLLOW, icon=viser.Icon.VIDEO)
         self._button.on_click(lambda _: self._toggle())
         site.gui.add_command('View: follow the selection', hotkey='V').on_trigger(
-            lambda _: self._toggle())
+            lambda _: self._toggle()
+        )
 
     def move(self, _motion: ShownMotion) -> None:
         """Move the cameras along."""

@@ -31,8 +31,12 @@ FULL = 'This window has no room for another browser.'
 LOOKS = 'This address is for looking: its browsers see everything and change nothing.'
 # What a browser may send that may only look: where its camera is, pictures that it is asked for,
 # and confirmations of parts of a download. Parts of uploads are dropped, as none has begun.
-OF_VIEWERS = {'ViewerCameraMessage', 'GetRenderResponseMessage', 'FileTransferPartAck',
-              'FileTransferPart'}
+OF_VIEWERS = {
+    'ViewerCameraMessage',
+    'GetRenderResponseMessage',
+    'FileTransferPartAck',
+    'FileTransferPart',
+}
 MAX_MESSAGE = 24_000_000  # [bytes], that of a large picture
 RATE, BURST = 1000.0, 5000.0  # messages of a browser in a second, and at once
 BACKLOG = 200  # commands that wait to be carried out; further ones are not read meanwhile
@@ -78,8 +82,10 @@ class Gate:
 
     def greet(self, client: viser.ClientHandle) -> None:
         """Tell a browser that may only look so."""
-        if any(not visitor.may_control and self._client(visitor) is client
-               for visitor in tuple(self._visitors.values())):
+        if any(
+            not visitor.may_control and self._client(visitor) is client
+            for visitor in tuple(self._visitors.values())
+        ):
             show(client, LOOKS)
 
     def connection_class(self) -> type[ServerConnection]:
@@ -88,7 +94,8 @@ class Gate:
 
         class Connection(ServerConnection):
             async def recv(  # type: ignore[override]  # of its overloads, viser uses none
-                    self, decode: bool | None = None) -> Data:
+                self, decode: bool | None = None
+            ) -> Data:
                 while True:
                     raw = await super().recv(decode)
                     if await gate._admits(self, raw):
@@ -98,6 +105,7 @@ class Gate:
 
     def counting(self, handler: Callable[[ServerConnection], Any]) -> Callable[..., Any]:
         """Return the handler of a connection with a limit on how many there are."""
+
         async def counted(connection: ServerConnection) -> None:
             may_control = getattr(connection, CONTROLS, False)
             alike = [one for one in self._visitors.values() if one.may_control == may_control]
@@ -110,6 +118,7 @@ class Gate:
             finally:
                 del self._visitors[id(connection)]
                 self._uploads.leave(visitor)
+
         return counted
 
     async def _admits(self, connection: ServerConnection, raw: object) -> bool:
@@ -167,7 +176,8 @@ class Gate:
             RefusedError: it does.
         """
         if type(message).__name__ in OF_VIEWERS or (
-                getattr(message, 'uuid', None) in self._for_viewers):
+            getattr(message, 'uuid', None) in self._for_viewers
+        ):
             return
         self._undo(visitor, message)
         raise RefusedError(LOOKS)
@@ -216,22 +226,33 @@ class Gate:
             if is_whole:
                 self._hand_over(visitor, upload)
 
-    def _acknowledge(self, visitor: Visitor, message: Any, size: int,  # noqa: ANN401
-                     received: int | None = None) -> None:
+    def _acknowledge(
+        self,
+        visitor: Visitor,
+        message: Any,
+        size: int,  # noqa: ANN401
+        received: int | None = None,
+    ) -> None:
         """Let a browser show how much of its file has come; by default, all of it."""
         client = self._client(visitor)
         if client is not None:
-            client._websock_connection.queue_message(FileTransferPartAck(
-                message.source_component_uuid, message.transfer_uuid,
-                size if received is None else received, size))
+            client._websock_connection.queue_message(
+                FileTransferPartAck(
+                    message.source_component_uuid,
+                    message.transfer_uuid,
+                    size if received is None else received,
+                    size,
+                )
+            )
 
     def _hand_over(self, visitor: Visitor, upload: Upload) -> None:
         client = self._client(visitor)
         if client is not None:
             assert self.site is not None
             executor: Executor = self.site._thread_executor
-            executor.submit(self._receivers[upload.button], client, upload.name,
-                            content(upload)).add_done_callback(_log_failure)
+            executor.submit(
+                self._receivers[upload.button], client, upload.name, content(upload)
+            ).add_done_callback(_log_failure)
 
     def _notify(self, visitor: Visitor, sentence: str) -> None:
         """Tell a browser what is refused; of many at once the first, and how many others."""
@@ -241,7 +262,8 @@ class Gate:
         else:
             if not visitor.left_out:
                 asyncio.get_running_loop().call_later(
-                    visitor.next_notice - now, self._tell_left_out, visitor)
+                    visitor.next_notice - now, self._tell_left_out, visitor
+                )
             visitor.left_out += 1
 
     def _tell_left_out(self, visitor: Visitor) -> None:
@@ -258,8 +280,14 @@ class Gate:
         """Return viser's handle of a connection; None before its first camera message."""
         assert self.site is not None
         connections = self.site._websock_server._live_connections
-        return next((self.site.get_clients().get(number)
-                     for number, one in connections.items() if one is visitor.connection), None)
+        return next(
+            (
+                self.site.get_clients().get(number)
+                for number, one in connections.items()
+                if one is visitor.connection
+            ),
+            None,
+        )
 
 
 def _log_failure(done: Any) -> None:  # noqa: ANN401  a future

@@ -27,8 +27,14 @@ class Drag:
     answers slowly skips poses. It holds the model at rest in each.
     """
 
-    def __init__(self, model: str, pose: Pose, hands: Hands, complain: Callable[[str], None],
-                 ended: Callable[['Drag'], None]) -> None:
+    def __init__(
+        self,
+        model: str,
+        pose: Pose,
+        hands: Hands,
+        complain: Callable[[str], None],
+        ended: Callable[['Drag'], None],
+    ) -> None:
         """Begin; `ended` is called at the end."""
         self.model, self.start, self.pose = model, pose, pose
         self.is_done = False  # whether the model was moved to the last pose
@@ -59,8 +65,15 @@ class Drag:
 class Gizmo(Panel):
     """One for all browsers. The browser that has grabbed it last moves the model."""
 
-    def __init__(self, site: viser.ViserServer, models: Models, selection: Selection, hands: Hands,
-                 history: History, complain: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        site: viser.ViserServer,
+        models: Models,
+        selection: Selection,
+        hands: Hands,
+        history: History,
+        complain: Callable[[str], None],
+    ) -> None:
         self._site, self._models, self._selection = site, models, selection
         self._hands, self._history, self._complain = hands, history, complain
         self._lock = threading.Lock()  # of the drag
@@ -80,8 +93,11 @@ class Gizmo(Panel):
 
     def _follow(self) -> None:
         model = self._model
-        if self._handle is not None and self._drag is None and (
-                model is not None and model in self._models.all):
+        if (
+            self._handle is not None
+            and self._drag is None
+            and (model is not None and model in self._models.all)
+        ):
             place(self._handle, self._models.pose(model))
 
     def _reach(self) -> None:
@@ -97,8 +113,14 @@ class Gizmo(Panel):
             pose = self._models.pose(self._model)
             with self._site.atomic():  # nobody grabs it before it is listened to
                 self._handle = self._site.scene.add_transform_controls(
-                    NODE, 1.0, fixed=False, depth_test=False, opacity=0.8,
-                    position=pose.position, wxyz=wxyz(pose))
+                    NODE,
+                    1.0,
+                    fixed=False,
+                    depth_test=False,
+                    opacity=0.8,
+                    position=pose.position,
+                    wxyz=wxyz(pose),
+                )
                 self._handle.on_update(self._dragged)
 
     async def _dragged(self, event: viser.TransformControlsEvent) -> None:
@@ -117,8 +139,9 @@ class Gizmo(Panel):
             if self._model is not None and event.target is self._handle:
                 self._owner = event.client_id
                 if self._drag is None or self._drag.is_released:
-                    self._drag = Drag(self._model, pose_of(event.target), self._hands,
-                                      self._complain, self._end)
+                    self._drag = Drag(
+                        self._model, pose_of(event.target), self._hands, self._complain, self._end
+                    )
 
     def _release(self, client: int | None) -> None:
         with self._lock:
@@ -131,7 +154,9 @@ class Gizmo(Panel):
             if self._drag is drag:
                 self._drag = self._owner = None
         if drag.is_done and not np.allclose(
-                [*drag.pose.position, *drag.pose.orientation],
-                [*drag.start.position, *drag.start.orientation]):
-            self._history.add(f"move '{drag.model}'",
-                              lambda: self._hands.move(drag.model, drag.start))
+            [*drag.pose.position, *drag.pose.orientation],
+            [*drag.start.position, *drag.start.orientation],
+        ):
+            self._history.add(
+                f"move '{drag.model}'", lambda: self._hands.move(drag.model, drag.start)
+            )

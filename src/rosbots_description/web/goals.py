@@ -46,12 +46,27 @@ class Goals(Protocol):
 class GoalPanel(Panel):
     """Buttons that are there while somebody takes goals or initial poses."""
 
-    def __init__(self, gui: viser.GuiApi, goals: Goals, models: Models, clicks: GroundClicks,
-                 notify: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        goals: Goals,
+        models: Models,
+        clicks: GroundClicks,
+        notify: Callable[[str], None],
+    ) -> None:
         self._tools = (
             Tool(gui, GOAL, goals.goal_topics, goals.send_goal, goals, models, clicks, notify),
-            Tool(gui, ESTIMATE, goals.estimate_topics, goals.send_estimate, goals, models, clicks,
-                 notify))
+            Tool(
+                gui,
+                ESTIMATE,
+                goals.estimate_topics,
+                goals.send_estimate,
+                goals,
+                models,
+                clicks,
+                notify,
+            ),
+        )
         self._goals = goals
 
     def close(self) -> None:
@@ -67,9 +82,17 @@ class GoalPanel(Panel):
 class Tool:
     """A button, and the topics of its poses."""
 
-    def __init__(self, gui: viser.GuiApi, label: str, topics: Callable[[], Sequence[str]],
-                 send: Callable[[str, str, Pose], None], goals: Goals, models: Models,
-                 clicks: GroundClicks, notify: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        label: str,
+        topics: Callable[[], Sequence[str]],
+        send: Callable[[str, str, Pose], None],
+        goals: Goals,
+        models: Models,
+        clicks: GroundClicks,
+        notify: Callable[[str], None],
+    ) -> None:
         self._label, self._topics, self._send = label, topics, send
         self._goals, self._models, self._clicks, self._notify = goals, models, clicks, notify
         self._offered: Sequence[str] = ()
@@ -90,13 +113,15 @@ class Tool:
     def _begin(self, event: viser.GuiEvent[viser.GuiButtonHandle]) -> None:
         if event.client is not None:
             self._frame()  # it begins to listen to TF
-            self._clicks.ask(event.client, f'{self._label}: click on the ground where it is.',
-                             self._take_point)
+            self._clicks.ask(
+                event.client, f'{self._label}: click on the ground where it is.', self._take_point
+            )
 
     def _take_point(self, client: viser.ClientHandle, point: Vector) -> None:
         self._clicks.mark(client, point)
-        self._clicks.ask(client, 'Now click on what the robot is to face.',
-                         partial(self._take_direction, point))
+        self._clicks.ask(
+            client, 'Now click on what the robot is to face.', partial(self._take_direction, point)
+        )
 
     def _take_direction(self, point: Vector, client: viser.ClientHandle, ahead: Vector) -> None:
         self._clicks.unmark(client)
@@ -110,8 +135,10 @@ class Tool:
             raise SimError(f'nobody takes a {self._label} any more')
         found = self._frame()
         if found is None:
-            raise SimError(f'TF connects neither {" nor ".join(FRAMES)} with a robot, so nobody '
-                           'would know where that is')
+            raise SimError(
+                f'TF connects neither {" nor ".join(FRAMES)} with a robot, so nobody '
+                'would know where that is'
+            )
         frame, origin = found
         x, y, yaw = _flat(compose(inverse(origin), pose))
         self._send(topic, frame, Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw)))

@@ -36,7 +36,8 @@ class GroundClicks:
         """Show a point in the scene [m], instead of that browser's last one."""
         number = client.client_id
         self._marks[number] = self._scene.add_icosphere(
-            f'{MARK}/{number}', 0.05, color=(255, 140, 0), position=point, cast_shadow=False)
+            f'{MARK}/{number}', 0.05, color=(255, 140, 0), position=point, cast_shadow=False
+        )
 
     def unmark(self, client: viser.ClientHandle) -> None:
         """Show a browser's point no more."""

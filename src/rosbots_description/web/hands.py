@@ -45,8 +45,9 @@ class Hands(Protocol):
     def hold(self, name: str, pose: Pose, duration: float) -> None:
         """Hold a model at rest at a pose for a time [s, wall]; zero: let it go there."""
 
-    def push(self, link: str, force: Vector, torque: Vector, duration: float,
-             own_axes: bool) -> None:
+    def push(
+        self, link: str, force: Vector, torque: Vector, duration: float, own_axes: bool
+    ) -> None:
         """Apply a force [N] at the centre of mass of a link, and a torque [N m].
 
         Args:
@@ -59,8 +60,15 @@ class Hands(Protocol):
 class HandsPanel(Panel):
     """Controls for the selected model."""
 
-    def __init__(self, gui: viser.GuiApi, models: Models, selection: Selection, hands: Hands,
-                 history: History, complain: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        models: Models,
+        selection: Selection,
+        hands: Hands,
+        history: History,
+        complain: Callable[[str], None],
+    ) -> None:
         self._models, self._selection, self._hands = models, selection, hands
         self._history, self._complain = history, complain
         self._title = Words(gui, HINT)
@@ -77,13 +85,23 @@ class HandsPanel(Panel):
         selection.on_change(self._show)
         duplicate.on_click(lambda _: self._do(self._duplicate))
         delete.on_click(lambda _: self._do(self._delete))
-        push.on_click(lambda _: self._do(lambda model: hands.push(
-            self._link_of(model), force.value, torque.value, duration.value,
-            axes.value == 'link')))
+        push.on_click(
+            lambda _: self._do(
+                lambda model: hands.push(
+                    self._link_of(model),
+                    force.value,
+                    torque.value,
+                    duration.value,
+                    axes.value == 'link',
+                )
+            )
+        )
         gui.add_command('Delete the selected model', hotkey='delete').on_trigger(
-            lambda _: self._do(self._delete))
+            lambda _: self._do(self._delete)
+        )
         gui.add_command('Duplicate the selected model', hotkey='D', modifier='shift').on_trigger(
-            lambda _: self._do(self._duplicate))
+            lambda _: self._do(self._duplicate)
+        )
 
     def _link_of(self, model: str) -> str:
         """Return the scoped name of the selected link, else of the canonical one."""

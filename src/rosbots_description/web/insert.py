@@ -53,9 +53,16 @@ class Library(Protocol):
 class InsertPanel(Panel):
     """Controls that insert where the camera looks, or at a place that was clicked on."""
 
-    def __init__(self, site: Site, library: Library, hands: Hands, selection: Selection,
-                 history: History, clicks: GroundClicks,
-                 complain: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        site: Site,
+        library: Library,
+        hands: Hands,
+        selection: Selection,
+        history: History,
+        clicks: GroundClicks,
+        complain: Callable[[str], None],
+    ) -> None:
         self._library, self._hands, self._selection = library, hands, selection
         self._history, self._complain = history, complain
         self._lights: Mapping[str, LightSpec] = {}
@@ -63,12 +70,19 @@ class InsertPanel(Panel):
         self._look = threading.Thread()
         gui = site.gui
         self._places = Places(clicks)
-        place = gui.add_button('Choose the place', icon=viser.Icon.MAP_PIN,
-                               hint='by a click on the ground; else it is where the camera looks')
+        place = gui.add_button(
+            'Choose the place',
+            icon=viser.Icon.MAP_PIN,
+            hint='by a click on the ground; else it is where the camera looks',
+        )
         with gui.add_folder('Shape'):
             kind = gui.add_dropdown('Kind', KINDS)
-            size = gui.add_vector3('Size [m]', (0.5, 0.5, 0.5), step=0.05, hint='x, y, z; x is the '
-                                   'diameter of what is round, z the length of a cylinder')
+            size = gui.add_vector3(
+                'Size [m]',
+                (0.5, 0.5, 0.5),
+                step=0.05,
+                hint='x, y, z; x is the diameter of what is round, z the length of a cylinder',
+            )
             mass = gui.add_number('Shape mass [kg]', 1.0, step=0.1)
             colour = gui.add_rgb('Colour', (220, 120, 40))
             static = gui.add_checkbox('Static', False, hint='it never moves by itself')
@@ -89,17 +103,40 @@ class InsertPanel(Panel):
             return red, green, blue
 
         place.on_click(lambda event: self._places.choose(event.client))
-        add_shape.on_click(lambda event: self._insert(event.client, lambda _: library.shape(
-            shape(kind.value, size.value, mass.value, rgb(), static.value))))
-        add_light.on_click(lambda event: self._insert(event.client, lambda place: library.light(
-            point_light(place, rgb()))))
+        add_shape.on_click(
+            lambda event: self._insert(
+                event.client,
+                lambda _: library.shape(
+                    shape(kind.value, size.value, mass.value, rgb(), static.value)
+                ),
+            )
+        )
+        add_light.on_click(
+            lambda event: self._insert(
+                event.client, lambda place: library.light(point_light(place, rgb()))
+            )
+        )
         remove_light.on_click(lambda _: attempt(self._remove_light, complain))
-        add_model.on_click(lambda event: self._insert(event.client, lambda _: library.model(
-            _chosen(self._models.value, 'model on the model path'))))
-        add_parameter.on_click(lambda event: self._insert(event.client, lambda _: library.parameter(
-            _chosen(self._parameters.value, 'parameter with a URDF'))))
-        site.receive_files(upload, lambda client, name, content: self._insert(
-            client, lambda _: library.file(name, content)))
+        add_model.on_click(
+            lambda event: self._insert(
+                event.client,
+                lambda _: library.model(_chosen(self._models.value, 'model on the model path')),
+            )
+        )
+        add_parameter.on_click(
+            lambda event: self._insert(
+                event.client,
+                lambda _: library.parameter(
+                    _chosen(self._parameters.value, 'parameter with a URDF')
+                ),
+            )
+        )
+        site.receive_files(
+            upload,
+            lambda client, name, content: self._insert(
+                client, lambda _: library.file(name, content)
+            ),
+        )
 
     def open(self) -> None:
         """Look at once."""
@@ -118,13 +155,14 @@ class InsertPanel(Panel):
         self._refreshes += 1
 
     def _look_around(self) -> None:
-        _offer(self._models, [
-            name for name in self._library.models() if name != GROUND_PLANE.name])
+        _offer(self._models, [name for name in self._library.models() if name != GROUND_PLANE.name])
         _offer(self._parameters, self._library.parameters())
 
-    def _insert(self, client: viser.ClientHandle | None,
-                read: Callable[[Vector], ModelText]) -> None:
+    def _insert(
+        self, client: viser.ClientHandle | None, read: Callable[[Vector], ModelText]
+    ) -> None:
         """Insert what `read` returns for the place of a browser."""
+
         def insert() -> None:
             place = self._places.take(client)
             text = replace(read(place), pose=Pose(place))
@@ -134,8 +172,10 @@ class InsertPanel(Panel):
             missing = self._hands.omissions(name)
             if missing:
                 more = f' and {len(missing) - LISTED} more' if len(missing) > LISTED else ''
-                self._complain(f"'{name}' was spawned without {', '.join(missing[:LISTED])}{more}; "
-                               'the log of the simulator says why')
+                self._complain(
+                    f"'{name}' was spawned without {', '.join(missing[:LISTED])}{more}; "
+                    'the log of the simulator says why'
+                )
 
         attempt(insert, self._complain)
 
@@ -145,8 +185,9 @@ class InsertPanel(Panel):
         if light is None:
             raise SimError('there is no light')
         self._hands.delete(name)
-        self._history.add(f"delete '{name}'", lambda: self._hands.insert(
-            self._library.light(light)))
+        self._history.add(
+            f"delete '{name}'", lambda: self._hands.insert(self._library.light(light))
+        )
 
 
 def _offer(choice: Choice, names: Sequence[str]) -> None:

@@ -20,8 +20,9 @@ SOON = 1.0  # [s, wall] for a state that is asked for again soon
 class States(Protocol):
     """Where models and links are, and how they move."""
 
-    def state(self, model: str, link: str | None,
-              patience: float | None = None) -> tuple[Pose, Twist]:
+    def state(
+        self, model: str, link: str | None, patience: float | None = None
+    ) -> tuple[Pose, Twist]:
         """Return pose and velocity of a model, or of one of its links, in the world.
 
         Args:
@@ -42,7 +43,11 @@ class Inspector(Panel):
     """A table of the state, and lists of joints, collisions and sensors."""
 
     def __init__(
-        self, gui: viser.GuiApi, states: States, models: Models, selection: Selection,
+        self,
+        gui: viser.GuiApi,
+        states: States,
+        models: Models,
+        selection: Selection,
         lock: threading.RLock,
     ) -> None:
         self._states, self._models, self._selection, self._lock = states, models, selection, lock
@@ -89,4 +94,5 @@ class Inspector(Panel):
     def _show_parts(self, name: str, link: str | None) -> None:
         model = self._models.all[name]
         self._parts.content = parts_html(
-            model, link, self._omissions if model is self._examined else ())
+            model, link, self._omissions if model is self._examined else ()
+        )

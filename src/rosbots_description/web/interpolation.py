@@ -81,14 +81,21 @@ def halfway(last: ShownMotion | None, motion: ShownMotion) -> ShownMotion | None
     passed = 0.0 if last is None else motion.time - last.time
     if last is None or passed <= 0.0:  # reset, or moved by hand while paused
         return None
-    middles = {number: _middle(last.poses[number], pose, FASTEST * passed)
-               for number, pose in motion.poses.items() if number in last.poses}
+    middles = {
+        number: _middle(last.poses[number], pose, FASTEST * passed)
+        for number, pose in motion.poses.items()
+        if number in last.poses
+    }
     poses = {number: pose for number, pose in middles.items() if pose is not None}
     if not poses:
         return None
     return ShownMotion(
-        (last.time + motion.time) / 2.0, (last.real_time + motion.real_time) / 2.0,
-        (last.iterations + motion.iterations) // 2, motion.paused, poses)
+        (last.time + motion.time) / 2.0,
+        (last.real_time + motion.real_time) / 2.0,
+        (last.iterations + motion.iterations) // 2,
+        motion.paused,
+        poses,
+    )
 
 
 def _middle(a: Pose, b: Pose, farthest: float) -> Pose | None:

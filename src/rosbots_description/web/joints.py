@@ -20,7 +20,10 @@ POSITION, VELOCITY, EFFORT = 'position', 'velocity', 'effort'
 MOST = 40  # sliders
 STEPS = 1000  # of a slider
 UNITS = {  # of joints that slide, and of those that turn
-    POSITION: ('m', 'rad'), VELOCITY: ('m/s', 'rad/s'), EFFORT: ('N', 'N m')}
+    POSITION: ('m', 'rad'),
+    VELOCITY: ('m/s', 'rad/s'),
+    EFFORT: ('N', 'N m'),
+}
 
 
 class Joints(Protocol):
@@ -48,26 +51,46 @@ class Joints(Protocol):
 class JointPanel(Panel):
     """A slider for each joint of the model that is chosen."""
 
-    def __init__(self, site: viser.ViserServer, joints: Joints, models: Models,
-                 complain: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        site: viser.ViserServer,
+        joints: Joints,
+        models: Models,
+        complain: Callable[[str], None],
+    ) -> None:
         self._site, self._joints, self._models, self._complain = site, joints, models, complain
         self._lock = threading.RLock()
         self._topics: Sequence[CommandTopic] = ()
         # Of the sliders: the model, its joints or the topics, what they set, and the range.
         self._shown: tuple[str, Sequence[CommandTopic | str], str, float] = (
-            NOTHING, (), POSITION, 0.0)
+            NOTHING,
+            (),
+            POSITION,
+            0.0,
+        )
         self._sliders: list[viser.GuiSliderHandle[float]] = []
         gui = site.gui
         self._folder = gui.add_folder('Joints', visible=False)
         with self._folder:
             self._of = Choice(gui, 'Of', [NOTHING], hint='a model, or topics of controllers')
             self._what = gui.add_dropdown('Sliders set', [POSITION, VELOCITY, EFFORT])
-            self._range = gui.add_number('Range', 10.0, min=0.001, step=0.001, hint=(
-                'of velocities [rad/s, m/s], efforts [N m, N] without a limit, and topics'))
-            self._force = gui.add_number('Motor effort', 10.0, min=0.0, step=0.001, hint=(
-                'a velocity is kept with at most this effort [N m, N]'))
+            self._range = gui.add_number(
+                'Range',
+                10.0,
+                min=0.001,
+                step=0.001,
+                hint=('of velocities [rad/s, m/s], efforts [N m, N] without a limit, and topics'),
+            )
+            self._force = gui.add_number(
+                'Motor effort',
+                10.0,
+                min=0.0,
+                step=0.001,
+                hint=('a velocity is kept with at most this effort [N m, N]'),
+            )
             self._release = gui.add_button(
-                'Release', hint='switches motors off and ends efforts of these joints')
+                'Release', hint='switches motors off and ends efforts of these joints'
+            )
         self._of.on_update(self._show)
         for control in (self._what, self._range):
             control.on_update(lambda _: self._show())
@@ -93,8 +116,7 @@ class JointPanel(Panel):
         """Show the sliders of what is chosen; those that are there stay, for they may be in use."""
         with self._lock:
             model = self._of.value
-            names: Sequence[CommandTopic | str] = tuple(
-                joint.name for joint in self._specs(model))
+            names: Sequence[CommandTopic | str] = tuple(joint.name for joint in self._specs(model))
             if model == TOPICS:
                 names = tuple(self._topics)
             wanted = model, names, self._what.value, float(self._range.value)
@@ -115,8 +137,11 @@ class JointPanel(Panel):
                 return
             for joint in self._specs(model):
                 unit = UNITS[what][joint.type != PRISMATIC]
-                self._add(f'{joint.name} [{unit}]', *self._range_of(model, joint, what, limit),
-                          self._setter(model, joint.name, what))
+                self._add(
+                    f'{joint.name} [{unit}]',
+                    *self._range_of(model, joint, what, limit),
+                    self._setter(model, joint.name, what),
+                )
 
     def _add_topic(self, topic: CommandTopic, limit: float) -> None:
         """Add the sliders of a topic, if there is room for all; a command has all their values.
@@ -127,8 +152,12 @@ class JointPanel(Panel):
         if len(self._sliders) + len(names) > MOST:
             return
         model, specs = self._model_of(topic.joints) if topic.are_positions else ('', {})
-        places = [self._range_of(model, specs[name], POSITION, limit) if name in specs
-                  else ((-limit, limit), 0.0) for name in names]
+        places = [
+            self._range_of(model, specs[name], POSITION, limit)
+            if name in specs
+            else ((-limit, limit), 0.0)
+            for name in names
+        ]
         values = [value for _, value in places]
 
         def command(index: int, value: float) -> None:
@@ -146,8 +175,9 @@ class JointPanel(Panel):
                 return model.name, specs
         return '', {}
 
-    def _range_of(self, model: str, joint: JointSpec, what: str,
-                  limit: float) -> tuple[tuple[float, float], float]:
+    def _range_of(
+        self, model: str, joint: JointSpec, what: str, limit: float
+    ) -> tuple[tuple[float, float], float]:
         """Return the least and greatest value of a joint's slider, and where it stands."""
         if what == VELOCITY:
             return (-limit, limit), 0.0
@@ -168,12 +198,18 @@ class JointPanel(Panel):
     def _setter(self, model: str, joint: str, what: str) -> Callable[[float], None]:
         if what == VELOCITY:
             return lambda value: self._joints.set_velocity(
-                model, joint, value, float(self._force.value))
+                model, joint, value, float(self._force.value)
+            )
         command = self._joints.set_position if what == POSITION else self._joints.set_effort
         return partial(command, model, joint)
 
-    def _add(self, label: str, limits: tuple[float, float], value: float,
-             command: Callable[[float], None]) -> None:
+    def _add(
+        self,
+        label: str,
+        limits: tuple[float, float],
+        value: float,
+        command: Callable[[float], None],
+    ) -> None:
         low, high = limits
         sent = [min(max(value, low), high)]
 
@@ -186,7 +222,8 @@ class JointPanel(Panel):
 
         with self._folder, self._site.atomic():  # nobody moves it before it is listened to
             slider = self._site.gui.add_slider(
-                plain(label), low, high, (high - low) / STEPS, sent[0])
+                plain(label), low, high, (high - low) / STEPS, sent[0]
+            )
             slider.on_update(send)
         self._sliders.append(slider)
 
@@ -194,7 +231,8 @@ class JointPanel(Panel):
         with self._lock:
             model = self._shown[0]
             for joint in self._specs(model):
-                attempt(partial(self._joints.set_velocity, model, joint.name, 0.0, 0.0),
-                        self._complain)
+                attempt(
+                    partial(self._joints.set_velocity, model, joint.name, 0.0, 0.0), self._complain
+                )
                 attempt(partial(self._joints.set_effort, model, joint.name, 0.0), self._complain)
             self._build()

@@ -38,7 +38,8 @@ class Joystick(Panel):
         self._pads: dict[int, _Pad] = {}  # by the numbers of clients
         self._held: dict[int, tuple[float, float]] = {}
         self._box = site.gui.add_checkbox(
-            'Joystick', initial_value=False, hint='a pad in the picture, for a finger or the mouse')
+            'Joystick', initial_value=False, hint='a pad in the picture, for a finger or the mouse'
+        )
         self._box.on_update(lambda _: self.refresh())
         site.on_client_connect(self._watch)
 
@@ -62,16 +63,29 @@ class Joystick(Panel):
         with client.atomic():  # what is pressed before it can be dragged would turn the camera
             frame = scene.add_frame(NODE, show_axes=False)
             base = scene.add_cylinder(
-                f'{NODE}/pad', RADIUS * height, THICKNESS, (120, 120, 120), opacity=0.4,
-                cast_shadow=False, receive_shadow=False, side='double')
+                f'{NODE}/pad',
+                RADIUS * height,
+                THICKNESS,
+                (120, 120, 120),
+                opacity=0.4,
+                cast_shadow=False,
+                receive_shadow=False,
+                side='double',
+            )
             knob = scene.add_cylinder(
-                f'{NODE}/knob', KNOB * height, 3.0 * THICKNESS, (40, 90, 255),
-                cast_shadow=False, receive_shadow=False)
+                f'{NODE}/knob',
+                KNOB * height,
+                3.0 * THICKNESS,
+                (40, 90, 255),
+                cast_shadow=False,
+                receive_shadow=False,
+            )
             pad = self._pads[client.client_id] = _Pad(frame, knob, RADIUS * height)
             place(frame, corner(client.camera))
 
             async def drag(event: viser.SceneNodeDragEvent[viser.CylinderHandle]) -> None:
                 self._drag(event, pad)  # not in threads, which would change the order
+
             for disc in (base, knob):
                 disc.on_drag(drag)
 
@@ -88,8 +102,10 @@ class Joystick(Panel):
     def _drag(self, event: viser.SceneNodeDragEvent[viser.CylinderHandle], pad: _Pad) -> None:
         with self._lock:
             # A drag goes on when its pad was removed, and ends when its browser has disconnected.
-            is_there = (self._pads.get(event.client_id) is pad
-                        and event.client_id in self._site.get_clients())
+            is_there = (
+                self._pads.get(event.client_id) is pad
+                and event.client_id in self._site.get_clients()
+            )
             if event.phase == 'end' or not is_there:
                 self._held.pop(event.client_id, None)
                 if is_there:
@@ -97,7 +113,8 @@ class Joystick(Panel):
                 return
             camera = event.client.camera
             across, along, ahead = compose(
-                inverse(_pose(camera)), Pose(event.end_position)).position
+                inverse(_pose(camera)), Pose(event.end_position)
+            ).position
             middle = _corner(camera)  # the pointer is nearer than the pad, at the knob's surface
             right = across * DEPTH / ahead - middle[0]
             down = along * DEPTH / ahead - middle[1]

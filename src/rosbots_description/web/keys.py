@@ -9,8 +9,17 @@ from .site import Site
 from .text import table
 
 TITLE, CLOSE = 'Keys (? closes this list)', 'Close'
-NAMES = {'arrowup': '\u2191', 'arrowdown': '\u2193', 'arrowleft': '\u2190', 'arrowright': '\u2192',
-         'escape': 'Escape', 'space': 'Space', 'delete': 'Delete', ',': 'comma', '.': 'full stop'}
+NAMES = {
+    'arrowup': '\u2191',
+    'arrowdown': '\u2193',
+    'arrowleft': '\u2190',
+    'arrowright': '\u2192',
+    'escape': 'Escape',
+    'space': 'Space',
+    'delete': 'Delete',
+    ',': 'comma',
+    '.': 'full stop',
+}
 MODIFIERS = {'cmd/ctrl': 'Ctrl-', 'shift': 'Shift-', None: ''}
 
 
@@ -22,8 +31,7 @@ class KeyHelp:
         self._lock = threading.Lock()
         self._shown: dict[int, GuiModalHandle] = {}  # by the numbers of clients
         site.on_client_disconnect(self._forget)
-        command = site.gui.add_command(
-            'Show the keys', hotkey='?', modifier='shift')  # type: ignore[arg-type]  # any key
+        command = site.gui.add_command('Show the keys', hotkey='?', modifier='shift')  # type: ignore[arg-type]  # any key
         command.on_trigger(lambda event: self._toggle(event.client))
         site.allow_viewers(command)
 

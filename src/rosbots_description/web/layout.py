@@ -89,7 +89,8 @@ STYLE = f'<style>{_ROWS}{_ICONS}{_CROSS}{_TABS}{_SHEET}</style>'
 CLOSE_SHEET = (  # which the page's policy allows; without double quotes, as it is in an attribute
     f"if (matchMedia('{NARROW}').matches && !document.body.dataset.sheet) "
     "{ document.body.dataset.sheet = 'closed'; this.closest(`[style*='position: fixed']`)"
-    "?.querySelector(`[style*='cursor: pointer']`)?.click() }")
+    "?.querySelector(`[style*='cursor: pointer']`)?.click() }"
+)
 
 
 def lay_out(gui: viser.GuiApi) -> None:

@@ -22,26 +22,47 @@ def add_light(scene: viser.SceneApi, name: str, light: LightSpec, shadows: bool)
     x, y, z = rotate(light.pose.orientation, light.direction)
     if light.type == DIRECTIONAL:
         back = -SUN_DISTANCE / (math.hypot(x, y, z) or 1.0)
-        scene.add_light_directional(name, color=colour, intensity=math.pi * brightness,
-                                    cast_shadow=shadow, position=(back * x, back * y, back * z))
+        scene.add_light_directional(
+            name,
+            color=colour,
+            intensity=math.pi * brightness,
+            cast_shadow=shadow,
+            position=(back * x, back * y, back * z),
+        )
         return
     intensity, decay = _decay(light)
     intensity *= math.pi * brightness
     if light.type == POINT:
-        scene.add_light_point(name, color=colour, intensity=intensity, distance=light.range,
-                              decay=decay, cast_shadow=shadow, position=light.pose.position)
+        scene.add_light_point(
+            name,
+            color=colour,
+            intensity=intensity,
+            distance=light.range,
+            decay=decay,
+            cast_shadow=shadow,
+            position=light.pose.position,
+        )
         return
     outer = max(light.spot_outer_angle, 1e-3)
     scene.add_light_spot(
-        name, color=colour, intensity=intensity, distance=light.range, decay=decay,
-        angle=min(outer, math.pi) / 2.0, penumbra=1.0 - min(light.spot_inner_angle / outer, 1.0),
-        cast_shadow=shadow, direction=(x, y, z), position=light.pose.position)
+        name,
+        color=colour,
+        intensity=intensity,
+        distance=light.range,
+        decay=decay,
+        angle=min(outer, math.pi) / 2.0,
+        penumbra=1.0 - min(light.spot_inner_angle / outer, 1.0),
+        cast_shadow=shadow,
+        direction=(x, y, z),
+        position=light.pose.position,
+    )
 
 
 def rgb_bytes(colour: Vector, brightness: float = 1.0) -> tuple[int, int, int]:
     """Return a colour of 0..1, divided by the brightness, as bytes."""
     red, green, blue = (
-        round(255.0 * min(max(part / (brightness or 1.0), 0.0), 1.0)) for part in colour)
+        round(255.0 * min(max(part / (brightness or 1.0), 0.0), 1.0)) for part in colour
+    )
     return red, green, blue
 
 

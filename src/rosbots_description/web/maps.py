@@ -37,8 +37,7 @@ class MapPanel(TopicPanel):
         self._maps = maps
         # What is shown, by topics, and whether TF connects it with a robot.
         self._shown: dict[str, tuple[ShownReading, bool]] = {}
-        self._truth = ReadingRow(site, TRUE, 'at a height', checked=False,
-                                 choose=self._show_truth)
+        self._truth = ReadingRow(site, TRUE, 'at a height', checked=False, choose=self._show_truth)
         self._height = site.gui.add_number('Height of the true map [m]', 0.2, step=0.05)
 
     def _show_truth(self) -> None:
@@ -72,5 +71,6 @@ class MapPanel(TopicPanel):
 def _note(reading: ShownReading, pose: Pose | None) -> str:
     if pose is not None or not has_shape(reading):
         return ''
-    return (f"TF does not connect its frame '{reading.frame}' with a robot: it is shown as the "
-            "world's.")
+    return (
+        f"TF does not connect its frame '{reading.frame}' with a robot: it is shown as the world's."
+    )

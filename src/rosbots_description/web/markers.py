@@ -38,18 +38,23 @@ def collisions(scene: viser.SceneApi, path: str, _model: ShownModel, link: Shown
             content = visual_gltf(Visual(one.name, one.geometry, material=COLLISION))
         except ModelError:  # its mesh was removed meanwhile
             continue
-        scene.add_glb(f'{path}/{number}', content, cast_shadow=False, receive_shadow=False,
-                      position=one.pose.position, wxyz=wxyz(one.pose))
+        scene.add_glb(
+            f'{path}/{number}',
+            content,
+            cast_shadow=False,
+            receive_shadow=False,
+            position=one.pose.position,
+            wxyz=wxyz(one.pose),
+        )
 
 
-def centre_of_mass(
-    scene: viser.SceneApi, path: str, model: ShownModel, link: ShownLink
-) -> None:
+def centre_of_mass(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownLink) -> None:
     """Show the centre of mass as a ball of lead of the link's mass."""
     if link.inertial is not None and not model.static:
         radius = (3.0 * link.inertial.mass / (4.0 * math.pi * LEAD)) ** (1.0 / 3.0)
-        scene.add_icosphere(path, radius, CENTRE, position=link.inertial.pose.position,
-                            cast_shadow=False)
+        scene.add_icosphere(
+            path, radius, CENTRE, position=link.inertial.pose.position, cast_shadow=False
+        )
 
 
 def inertia(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownLink) -> None:
@@ -57,8 +62,16 @@ def inertia(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownLink
     if link.inertial is not None and not model.static:
         size, orientation = equal_box(link.inertial)
         x, y, z, w = orientation
-        scene.add_box(path, INERTIA, size, opacity=0.5, position=link.inertial.pose.position,
-                      wxyz=(w, x, y, z), cast_shadow=False, receive_shadow=False)
+        scene.add_box(
+            path,
+            INERTIA,
+            size,
+            opacity=0.5,
+            position=link.inertial.pose.position,
+            wxyz=(w, x, y, z),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
 
 
 def joint_axes(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownLink) -> None:
@@ -67,11 +80,24 @@ def joint_axes(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownL
     for joint in model.joints:
         if joint.child == link.name:
             start, along = joint.pose.position, joint.axis_in_child
-            arrows.append((start, add(start, (AXIS_LENGTH * along[0], AXIS_LENGTH * along[1],
-                                              AXIS_LENGTH * along[2]))))
+            arrows.append(
+                (
+                    start,
+                    add(
+                        start,
+                        (AXIS_LENGTH * along[0], AXIS_LENGTH * along[1], AXIS_LENGTH * along[2]),
+                    ),
+                )
+            )
     if arrows:
-        scene.add_arrows(path, np.array(arrows), AXIS, shaft_radius=AXIS_LENGTH / 40.0,
-                         head_radius=AXIS_LENGTH / 16.0, head_length=AXIS_LENGTH / 6.0)
+        scene.add_arrows(
+            path,
+            np.array(arrows),
+            AXIS,
+            shaft_radius=AXIS_LENGTH / 40.0,
+            head_radius=AXIS_LENGTH / 16.0,
+            head_length=AXIS_LENGTH / 6.0,
+        )
 
 
 def equal_box(inertial: Inertial) -> tuple[Vector, tuple[float, float, float, float]]:
@@ -80,8 +106,10 @@ def equal_box(inertial: Inertial) -> tuple[Vector, tuple[float, float, float, fl
     Its moments are m / 12 (y^2 + z^2), and so on.
     """
     (a, b, c), orientation = principal_axes(inertial)
-    x, y, z = (math.sqrt(max(6.0 * twice / inertial.mass, 0.0))
-               for twice in (b + c - a, a + c - b, a + b - c))
+    x, y, z = (
+        math.sqrt(max(6.0 * twice / inertial.mass, 0.0))
+        for twice in (b + c - a, a + c - b, a + b - c)
+    )
     return (x, y, z), orientation
 
 

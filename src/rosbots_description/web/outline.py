@@ -17,8 +17,14 @@ MOST = 200  # links of one model that get a box
 GAP = 0.003  # between the box and what it is around [m]
 # Edges of a box: pairs of opposite ends along each axis, of a cube from -1 to 1.
 _ENDS = [(a, b, c) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
-EDGES = np.array([(one, other) for one in _ENDS for other in _ENDS
-                  if one < other and sum(x != y for x, y in zip(one, other, strict=True)) == 1])
+EDGES = np.array(
+    [
+        (one, other)
+        for one in _ENDS
+        for other in _ENDS
+        if one < other and sum(x != y for x, y in zip(one, other, strict=True)) == 1
+    ]
+)
 
 
 class Outline(Panel):
@@ -48,6 +54,10 @@ class Outline(Panel):
         if points:
             low, high = np.min(points, axis=0) - GAP, np.max(points, axis=0) + GAP
             self._scene.add_line_segments(
-                name, (low + high) / 2.0 + EDGES * (high - low) / 2.0, COLOUR, thickness=WIDTH,
-                thickness_units='screen')
+                name,
+                (low + high) / 2.0 + EDGES * (high - low) / 2.0,
+                COLOUR,
+                thickness=WIDTH,
+                thickness_units='screen',
+            )
             self._shown.append(name)

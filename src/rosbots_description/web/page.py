@@ -58,8 +58,9 @@ BACK = 'The simulator is running again.'
 class View(Protocol):
     """The scene of a simulator."""
 
-    def open(self, change: Callable[[SceneChange], None],
-             motion: Callable[[ShownMotion], None]) -> None:
+    def open(
+        self, change: Callable[[SceneChange], None], motion: Callable[[ShownMotion], None]
+    ) -> None:
         """Begin to call back, from any thread."""
 
     def close(self) -> None:
@@ -140,7 +141,8 @@ class Page:
         models = Models()
         self.selection = Selection(models, self._lock)
         site.gui.add_command('Select nothing', hotkey='escape').on_trigger(
-            lambda _: self.selection.choose(None))
+            lambda _: self.selection.choose(None)
+        )
         self._start = StartView(models)
         name = WorldName(site.gui)
         self._bar = Bar(site.gui, simulator.time, self._notify)
@@ -150,16 +152,27 @@ class Page:
         scene = SceneView(site, views.click)
         self._ground = Ground(site, models)
         self._panels: list[Panel] = [
-            models, self._start, scene, self.selection,
-            Outline(site.scene, models, self.selection), self._bar, clock, name, history, notices,
-            FollowPanel(site, models, self.selection), self._ground]
+            models,
+            self._start,
+            scene,
+            self.selection,
+            Outline(site.scene, models, self.selection),
+            self._bar,
+            clock,
+            name,
+            history,
+            notices,
+            FollowPanel(site, models, self.selection),
+            self._ground,
+        ]
         KeyHelp(site)
         self._add_tabs(simulator, models, scene, history)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 
-    def _add_tabs(self, simulator: Simulator, models: Models, scene: SceneView,
-                  history: History) -> None:
+    def _add_tabs(
+        self, simulator: Simulator, models: Models, scene: SceneView, history: History
+    ) -> None:
         site = self._site
         keys, clicks = CameraKeys(site.gui), GroundClicks(site)
         tabs = site.gui.add_tab_group()
@@ -168,40 +181,54 @@ class Page:
                 drive = DrivePanel(site.gui, simulator.robots, keys)
                 self._panels += [drive, Joystick(site, drive.steer)]
                 if simulator.joints is not None:
-                    self._panels.append(
-                        JointPanel(site, simulator.joints, models, self._notify))
+                    self._panels.append(JointPanel(site, simulator.joints, models, self._notify))
         with tabs.add_tab('Models', viser.Icon.LIST_TREE):
             if simulator.inspection is not None:
                 self._panels += [
-                    Inspector(
-                        site.gui, simulator.inspection, models, self.selection, self._lock),
+                    Inspector(site.gui, simulator.inspection, models, self.selection, self._lock),
                     ChangePanel(
-                        site.gui, simulator.inspection, models, self.selection, history,
-                        self._notify)]
+                        site.gui,
+                        simulator.inspection,
+                        models,
+                        self.selection,
+                        history,
+                        self._notify,
+                    ),
+                ]
             self._panels.append(ModelTree(site, models, self.selection, self._lock))
         if simulator.hands is not None:
             with tabs.add_tab('Edit', viser.Icon.TOOL):
-                HandsPanel(
-                    site.gui, models, self.selection, simulator.hands, history, self._notify)
+                HandsPanel(site.gui, models, self.selection, simulator.hands, history, self._notify)
                 if simulator.library is not None:
-                    self._panels.append(InsertPanel(
-                        site, simulator.library, simulator.hands, self.selection, history, clicks,
-                        self._notify))
-            self._panels.append(Gizmo(
-                site, models, self.selection, simulator.hands, history, self._notify))
+                    self._panels.append(
+                        InsertPanel(
+                            site,
+                            simulator.library,
+                            simulator.hands,
+                            self.selection,
+                            history,
+                            clicks,
+                            self._notify,
+                        )
+                    )
+            self._panels.append(
+                Gizmo(site, models, self.selection, simulator.hands, history, self._notify)
+            )
         with tabs.add_tab('Show', viser.Icon.EYE):
             self._panels.append(ShowPanel(site, scene, models, self.selection, self._lock))
             if simulator.contacts is not None:
                 self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
         if simulator.sensors is not None:
             with tabs.add_tab('Sensors', viser.Icon.CAMERA):
-                self._panels.append(TopicPanel(
-                    site, simulator.sensors, models, 'sensors', 'No sensor publishes.'))
+                self._panels.append(
+                    TopicPanel(site, simulator.sensors, models, 'sensors', 'No sensor publishes.')
+                )
         if simulator.maps is not None and simulator.goals is not None:
             with tabs.add_tab('Map', viser.Icon.MAP):
                 self._panels += [
                     GoalPanel(site.gui, simulator.goals, models, clicks, self._notify),
-                    MapPanel(site, simulator.maps, models)]
+                    MapPanel(site, simulator.maps, models),
+                ]
         if simulator.signals is not None:
             with tabs.add_tab('Plot', viser.Icon.CHART_LINE):
                 self._panels.append(PlotPanel(site, simulator.signals, self._notify))

@@ -16,8 +16,9 @@ class Places:
     def choose(self, client: viser.ClientHandle | None) -> None:
         """Let the next click of a browser choose its place."""
         if client is not None:
-            self._clicks.ask(client, 'Click on the ground where the next model is to appear.',
-                             self._keep)
+            self._clicks.ask(
+                client, 'Click on the ground where the next model is to appear.', self._keep
+            )
 
     def take(self, client: viser.ClientHandle | None) -> Vector:
         """Return the place of a browser [m]; one that was clicked on serves once."""

@@ -54,8 +54,9 @@ class Signals(Protocol):
 class PlotPanel(ReadingPanel):
     """Chooses curves and draws them."""
 
-    def __init__(self, site: viser.ViserServer, signals: Signals,
-                 complain: Callable[[str], None]) -> None:
+    def __init__(
+        self, site: viser.ViserServer, signals: Signals, complain: Callable[[str], None]
+    ) -> None:
         super().__init__(PERIOD)
         self._site, self._signals, self._complain = site, signals, complain
         gui = site.gui
@@ -149,14 +150,23 @@ class PlotPanel(ReadingPanel):
             if curves:
                 self._plot = self._site.gui.add_uplot(
                     self._chart.table(self._now()),
-                    (uplot.Series(label='simulated time [s]'), *(
-                        uplot.Series(label=plain(curve), stroke=colour, width=1.5)
-                        for curve, colour in zip(curves, cycle(COLOURS), strict=False))),
-                    scales={'x': {'time': False}}, height=HEIGHT, padding=PADDING, order=FIRST)
+                    (
+                        uplot.Series(label='simulated time [s]'),
+                        *(
+                            uplot.Series(label=plain(curve), stroke=colour, width=1.5)
+                            for curve, colour in zip(curves, cycle(COLOURS), strict=False)
+                        ),
+                    ),
+                    scales={'x': {'time': False}},
+                    height=HEIGHT,
+                    padding=PADDING,
+                    order=FIRST,
+                )
             for curve in curves:
                 if curve not in self._boxes:
                     self._boxes[curve] = box = self._site.gui.add_checkbox(
-                        plain(curve), initial_value=True, hint='uncheck to remove')
+                        plain(curve), initial_value=True, hint='uncheck to remove'
+                    )
                     box.on_update(partial(self._uncheck, curve))
 
     def _uncheck(self, curve: str, _event: object) -> None:

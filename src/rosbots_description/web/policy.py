@@ -25,13 +25,14 @@ _NOTEBOOKS = 'http://127.0.0.1:* http://localhost:* vscode-webview:'
 _SCRIPT = re.compile(r'<script\b([^>]*)>(.*?)</script>', re.DOTALL)
 _ATTRIBUTE = re.compile(r'\bdata-(p|ss|cs)="([^"]*)"')
 # All printable characters that need no escape in an attribute; four bytes are five of them.
-_ALPHABET = bytes(code for code in range(0x21, 0x7f) if code not in b'"&<>\'`')
+_ALPHABET = bytes(code for code in range(0x21, 0x7F) if code not in b'"&<>\'`')
 
 
 def page_headers(is_framed: bool = False) -> dict[str, str]:
     """Return the headers of every response; pages of this machine may frame it, if it says so."""
-    scripts = ' '.join(_hash(script) for script in (
-        *_client_scripts(), *HANDLERS, CLOSE_SHEET, SET_TITLE))
+    scripts = ' '.join(
+        _hash(script) for script in (*_client_scripts(), *HANDLERS, CLOSE_SHEET, SET_TITLE)
+    )
     policy = {
         'default-src': "'none'",
         'script-src': f"'unsafe-hashes' 'unsafe-eval' {scripts}",
@@ -41,13 +42,16 @@ def page_headers(is_framed: bool = False) -> dict[str, str]:
         'media-src': 'data: blob:',
         'worker-src': 'data: blob:',
         'connect-src': "'self' data: blob:",  # 'self' has the WebSocket, too
-        'base-uri': "'none'", 'form-action': "'none'",
+        'base-uri': "'none'",
+        'form-action': "'none'",
         'frame-ancestors': _NOTEBOOKS if is_framed else "'none'",
     }
     return {
         'Content-Security-Policy': '; '.join(f'{name} {value}' for name, value in policy.items()),
-        **({} if is_framed else {'X-Frame-Options': 'DENY'}), 'X-Content-Type-Options': 'nosniff',
-        'Referrer-Policy': 'no-referrer', 'Cache-Control': 'no-store',
+        **({} if is_framed else {'X-Frame-Options': 'DENY'}),
+        'X-Content-Type-Options': 'nosniff',
+        'Referrer-Policy': 'no-referrer',
+        'Cache-Control': 'no-store',
         'Cross-Origin-Opener-Policy': 'same-origin',
         'Cross-Origin-Resource-Policy': 'same-origin',
     }
@@ -64,8 +68,9 @@ def _client_scripts() -> tuple[str, ...]:
         if packed:
             styles, size = int(packed['ss']), int(packed['cs'])
             content = zstandard.ZstdDecompressor().decompress(
-                _decoded(packed['p'].encode()), max_output_size=styles + size)
-            found.append(content[styles:styles + size].decode('utf-8'))
+                _decoded(packed['p'].encode()), max_output_size=styles + size
+            )
+            found.append(content[styles : styles + size].decode('utf-8'))
     return tuple(found)
 
 
@@ -74,7 +79,7 @@ def _decoded(text: bytes) -> bytes:
     digit = {code: number for number, code in enumerate(_ALPHABET)}
     made = bytearray()
     for start in range(0, len(text), 5):
-        group = text[start:start + 5]
+        group = text[start : start + 5]
         value = 0
         for code in group:
             value = value * len(_ALPHABET) + digit[code]

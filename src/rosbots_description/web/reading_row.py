@@ -24,13 +24,20 @@ PACKED = 20  # of a map's bytes, about one of so many is sent
 class ReadingRow:
     """Shows a topic while its box is checked; not thread-safe."""
 
-    def __init__(self, site: viser.ViserServer, topic: str, kind: str, checked: bool,
-                 choose: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        site: viser.ViserServer,
+        topic: str,
+        kind: str,
+        checked: bool,
+        choose: Callable[[], None],
+    ) -> None:
         """Add the box; `choose` is called when a browser changes it."""
         self._site, self._topic = site, topic
         with site.atomic():  # nobody clicks before it is listened to
             self._box = site.gui.add_checkbox(
-                plain(topic), checked, hint=f'{plain(topic)} ({plain(kind)})')
+                plain(topic), checked, hint=f'{plain(topic)} ({plain(kind)})'
+            )
             self._box.on_update(lambda _: choose())
         self._folder = site.gui.add_folder(plain(kind), visible=False)
         with self._folder:
@@ -113,16 +120,25 @@ class ReadingRow:
         if reading.points is not None:
             colours = COLOUR if reading.colours is None else reading.colours
             if self._points is None or reading.colours is not None:
-                self._points = scene.add_point_cloud(f'{name}/points', reading.points, colours,
-                                                     point_size=POINT, point_shape='circle')
+                self._points = scene.add_point_cloud(
+                    f'{name}/points',
+                    reading.points,
+                    colours,
+                    point_size=POINT,
+                    point_shape='circle',
+                )
             else:
                 self._points.points = reading.points.astype(np.float16)
             sent += reading.points.nbytes
         if reading.lines is not None:
             if self._lines is None:
                 self._lines = scene.add_line_segments(
-                    f'{name}/lines', reading.lines, reading.line_colour,
-                    thickness=reading.line_width, thickness_units='screen')
+                    f'{name}/lines',
+                    reading.lines,
+                    reading.line_colour,
+                    thickness=reading.line_width,
+                    thickness_units='screen',
+                )
             else:
                 self._lines.points = reading.lines
             sent += reading.lines.nbytes
@@ -138,8 +154,15 @@ class ReadingRow:
         # Browsers blur a picture: a cell has some pixels, so that its edges are seen.
         pixels = max(1, PIXELS // max(rows, columns))
         self._site.scene.add_image(
-            name, grid.cells.repeat(pixels, axis=0).repeat(pixels, axis=1), *size, format='png',
-            cast_shadow=False, receive_shadow=False, position=centre.position, wxyz=wxyz(centre))
+            name,
+            grid.cells.repeat(pixels, axis=0).repeat(pixels, axis=1),
+            *size,
+            format='png',
+            cast_shadow=False,
+            receive_shadow=False,
+            position=centre.position,
+            wxyz=wxyz(centre),
+        )
         return grid.cells.nbytes // PACKED
 
 

@@ -37,8 +37,9 @@ class SceneView(Panel):
     thread; grounds and other planes take no clicks.
     """
 
-    def __init__(self, site: viser.ViserServer,
-                 click: Callable[[str, str, viser.ClientHandle], None]) -> None:
+    def __init__(
+        self, site: viser.ViserServer, click: Callable[[str, str, viser.ClientHandle], None]
+    ) -> None:
         self._site, self._click = site, click
         self._models: dict[str, _Shown] = {}
         self._frames: dict[int, viser.FrameHandle] = {}
@@ -50,8 +51,11 @@ class SceneView(Panel):
     def apply(self, change: SceneChange) -> None:
         """Show what has changed."""
         new = {model.name: model for model in change.models}
-        kept = {name for name, model in new.items()
-                if name in self._models and _looks(self._models[name].model, model)}
+        kept = {
+            name
+            for name, model in new.items()
+            if name in self._models and _looks(self._models[name].model, model)
+        }
         gone = (self._models.keys() if change.reset else set(change.removed)) - kept
         with self._site.atomic():
             self._light(change)
@@ -63,8 +67,11 @@ class SceneView(Panel):
                 else:
                     self._remove(name)
                     self._add(model)
-            self._frames = {number: frame for shown in self._models.values()
-                            for number, frame in shown.links.items()}
+            self._frames = {
+                number: frame
+                for shown in self._models.values()
+                for number, frame in shown.links.items()
+            }
 
     def move(self, motion: ShownMotion) -> None:
         """Move links."""
@@ -87,8 +94,11 @@ class SceneView(Panel):
         if change.scene != self._scene:
             self._scene, self._lights = change.scene, {}
             ambient = change.scene.ambient[:3]
-            scene.add_light_ambient('/lights/ambient', color=rgb_bytes(ambient, max(ambient)),
-                                    intensity=math.pi * max(ambient) / 2.0)
+            scene.add_light_ambient(
+                '/lights/ambient',
+                color=rgb_bytes(ambient, max(ambient)),
+                intensity=math.pi * max(ambient) / 2.0,
+            )
             scene.configure_environment_map('city', environment_intensity=max(ambient) / 2.0)
             scene.set_background_image(_sky(change.scene), format='png')
         if change.lights != self._lights:
@@ -106,8 +116,11 @@ class SceneView(Panel):
         self._models[model.name] = shown
         for link in model.links:
             shown.links[link.number] = scene.add_frame(
-                link_node(model.name, link.name), show_axes=False,
-                position=link.pose.position, wxyz=wxyz(link.pose))
+                link_node(model.name, link.name),
+                show_axes=False,
+                position=link.pose.position,
+                wxyz=wxyz(link.pose),
+            )
             self._add_visuals(link, model.name)
 
     def _add_visuals(self, link: ShownLink, model: str) -> None:
@@ -117,33 +130,46 @@ class SceneView(Panel):
             try:
                 content = visual_gltf(visual, self._look if plane is None else Look.SOLID)
             except ModelError as error:
-                logger.warning("visual '%s' of model '%s' is not shown: %s", visual.name, model,
-                               error)
+                logger.warning(
+                    "visual '%s' of model '%s' is not shown: %s", visual.name, model, error
+                )
                 continue
             shape = self._site.scene.add_glb(
-                name, content, position=visual.pose.position, wxyz=wxyz(visual.pose),
-                cast_shadow=plane is None)
+                name,
+                content,
+                position=visual.pose.position,
+                wxyz=wxyz(visual.pose),
+                cast_shadow=plane is None,
+            )
             if plane is None:
                 shape.on_click(partial(self._clicked, model, link.name))
             elif plane.normal == UP:
                 self._add_grid(f'{name}/grid', plane)
 
-    def _clicked(self, model: str, link: str,
-                 event: viser.SceneNodePointerEvent[viser.GlbHandle]) -> None:
+    def _clicked(
+        self, model: str, link: str, event: viser.SceneNodePointerEvent[viser.GlbHandle]
+    ) -> None:
         self._click(model, link, event.client)
 
     def _add_grid(self, name: str, plane: Plane) -> None:
         width, depth = plane.size
         self._site.scene.add_grid(
-            name, width, depth, cell_size=1.0, section_size=10.0, cell_color=(130, 130, 130),
-            section_color=(105, 105, 105), shadow_opacity=0.0, fade_distance=60.0,
-            position=(0.0, 0.0, GRID_HEIGHT))
+            name,
+            width,
+            depth,
+            cell_size=1.0,
+            section_size=10.0,
+            cell_color=(130, 130, 130),
+            section_color=(105, 105, 105),
+            shadow_opacity=0.0,
+            fade_distance=60.0,
+            position=(0.0, 0.0, GRID_HEIGHT),
+        )
 
     def _renumber(self, model: ShownModel) -> None:
         shown = self._models[model.name]
         frames = shown.links.values()
-        shown.links = {link.number: frame
-                       for link, frame in zip(model.links, frames, strict=True)}
+        shown.links = {link.number: frame for link, frame in zip(model.links, frames, strict=True)}
         shown.model = model
         for link in model.links:
             place(shown.links[link.number], link.pose)
@@ -156,7 +182,8 @@ class SceneView(Panel):
 def _looks(a: ShownModel, b: ShownModel) -> bool:
     """Tell whether two models look alike, wherever they are."""
     return [(link.name, link.visuals) for link in a.links] == [
-        (link.name, link.visuals) for link in b.links]
+        (link.name, link.visuals) for link in b.links
+    ]
 
 
 def _sky(scene: SceneSpec) -> NDArray[np.uint8]:

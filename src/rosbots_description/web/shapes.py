@@ -43,14 +43,23 @@ def shape(kind: str, size: Vector, mass: float, rgb: Vector, static: bool) -> Mo
     ixx, iyy, izz = (mass * moment for moment in moments)
     look = Material.plain((*rgb, 1.0))
     link = LinkSpec(
-        'link', inertial=Inertial(mass, ixx=ixx, iyy=iyy, izz=izz),
+        'link',
+        inertial=Inertial(mass, ixx=ixx, iyy=iyy, izz=izz),
         collisions=(Collision('collision', geometry),),
-        visuals=(Visual('visual', geometry, material=look),))
+        visuals=(Visual('visual', geometry, material=look),),
+    )
     return ModelSpec(kind, (link,), static=static)
 
 
 def point_light(place: Vector, rgb: Vector) -> LightSpec:
     """Return a point light of a colour above a place on the ground [m]."""
     x, y, z = place
-    return LightSpec('light', pose=Pose((x, y, z + LIGHT_HEIGHT)), diffuse=(*rgb, 1.0), range=20.0,
-                     attenuation_constant=0.5, attenuation_linear=0.0, attenuation_quadratic=0.1)
+    return LightSpec(
+        'light',
+        pose=Pose((x, y, z + LIGHT_HEIGHT)),
+        diffuse=(*rgb, 1.0),
+        range=20.0,
+        attenuation_constant=0.5,
+        attenuation_linear=0.0,
+        attenuation_quadratic=0.1,
+    )

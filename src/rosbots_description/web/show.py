@@ -18,7 +18,11 @@ class ShowPanel(Panel):
     """Boxes to check; what is shown of a link is a part of its node and moves along."""
 
     def __init__(
-        self, site: viser.ViserServer, view: SceneView, models: Models, selection: Selection,
+        self,
+        site: viser.ViserServer,
+        view: SceneView,
+        models: Models,
+        selection: Selection,
         lock: threading.RLock,
     ) -> None:
         self._site, self._models, self._selection, self._lock = site, models, selection, lock

@@ -23,9 +23,17 @@ class WindowError(Exception):
 class Site(viser.ViserServer):
     """Viser's server for those who have the token."""
 
-    def __init__(self, host: str, port: int, token: str = '', *, viewing_token: str = '',
-                 is_open: bool = False, is_framed: bool = False,
-                 most_viewers: int = MOST_CLIENTS) -> None:
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        token: str = '',
+        *,
+        viewing_token: str = '',
+        is_open: bool = False,
+        is_framed: bool = False,
+        most_viewers: int = MOST_CLIENTS,
+    ) -> None:
         """Begin to serve.
 
         Args:
@@ -41,8 +49,7 @@ class Site(viser.ViserServer):
         """
         for given in filter(None, (token, viewing_token)):
             if not TOKEN.fullmatch(given):
-                raise WindowError(
-                    'the token is not one: it has 16 to 128 letters, digits, - and _')
+                raise WindowError('the token is not one: it has 16 to 128 letters, digits, - and _')
         if token and token == viewing_token:
             raise WindowError('the token for viewing is that for control; give it another one')
         listener = _listen(host, port)
@@ -59,12 +66,24 @@ class Site(viser.ViserServer):
         door = Door(host, port, self.token, self.viewing_token, page_headers(is_framed))
         serve = websockets.asyncio.server.serve
 
-        def serve_here(handler: Any, *_address: Any, process_request: Process,  # noqa: ANN401
-                       **options: Any) -> Any:  # noqa: ANN401
-            options |= {'max_size': MAX_MESSAGE, 'max_queue': 1, 'server_header': None,
-                        'create_connection': gate.connection_class()}
-            return serve(gate.counting(handler), sock=listener,
-                         process_request=door.guarding(process_request), **options)
+        def serve_here(
+            handler: Any,
+            *_address: Any,
+            process_request: Process,  # noqa: ANN401
+            **options: Any,
+        ) -> Any:  # noqa: ANN401
+            options |= {
+                'max_size': MAX_MESSAGE,
+                'max_queue': 1,
+                'server_header': None,
+                'create_connection': gate.connection_class(),
+            }
+            return serve(
+                gate.counting(handler),
+                sock=listener,
+                process_request=door.guarding(process_request),
+                **options,
+            )
 
         rich.reconfigure(quiet=True)  # viser's own lines
         logging.getLogger('websockets.server').addFilter(_NO_NOISE)
@@ -75,7 +94,8 @@ class Site(viser.ViserServer):
             super().__init__(host, port, verbose=False)
         leave_to_loop(self._websock_server.get_message_buffer())
         self._websock_server.on_client_connect(
-            lambda client: leave_to_loop(client.get_message_buffer()))
+            lambda client: leave_to_loop(client.get_message_buffer())
+        )
         gate.site = self
         self.on_client_connect(gate.greet)
 
@@ -119,5 +139,6 @@ def _listen(host: str, port: int) -> socket.socket:
         if made is not None:
             made.close()
         reason = getattr(error, 'strerror', None) or error
-        raise WindowError(f'no window at {host}, port {port}: {reason}; '
-                          'web_port and web_host choose others') from error
+        raise WindowError(
+            f'no window at {host}, port {port}: {reason}; web_port and web_host choose others'
+        ) from error

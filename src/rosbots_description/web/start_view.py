@@ -85,11 +85,23 @@ def _target(camera: Pose, middle: Vector) -> Vector:
 
 def _best(boxes: list[Placed], middle: Vector, distance: float) -> Vector:
     """Return the first eye from which nearly as much is seen as from any other."""
-    eyes = [as_vector(np.add(middle, distance * np.array([
-        math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth),
-        math.sin(elevation)])))
+    eyes = [
+        as_vector(
+            np.add(
+                middle,
+                distance
+                * np.array(
+                    [
+                        math.cos(elevation) * math.cos(azimuth),
+                        math.cos(elevation) * math.sin(azimuth),
+                        math.sin(elevation),
+                    ]
+                ),
+            )
+        )
         for elevation in ELEVATIONS
-        for azimuth in FIRST + np.arange(AROUND) * 2.0 * math.pi / AROUND]
+        for azimuth in FIRST + np.arange(AROUND) * 2.0 * math.pi / AROUND
+    ]
     seen = []
     for eye in eyes:
         seen.append(_seen(boxes, np.array(eye)))
@@ -102,7 +114,7 @@ def _seen(boxes: list[Placed], eye: Points) -> float:
     """Return the share of boxes whose middle no box of another model hides."""
     if not boxes:
         return 1.0
-    shown = boxes[::-(-len(boxes) // MOST)]
+    shown = boxes[:: -(-len(boxes) // MOST)]
     large = sorted(boxes, key=lambda box: -float(np.ptp(box[1], axis=0).prod()))[:MOST]
     names, corner = np.array([name for name, _ in large]), np.array([box for _, box in large])
     edges = corner[:, (4, 2, 1)] - corner[:, :1]  # from the lowest corner along x, y, z

@@ -41,16 +41,31 @@ class TakeAwayPanel(Panel):
         self._served: set[int] = set()  # browsers that are being given a file
         gui = site.gui
         if worlds is not None:
-            self._button('World', viser.Icon.WORLD_DOWNLOAD, partial(_give_world, worlds), gui,
-                         'a world file: everything as it is now')
-        site.allow_viewers(self._button('Picture', viser.Icon.CAMERA, _give_picture, gui,
-                                        'what this browser shows, as PNG'))
+            self._button(
+                'World',
+                viser.Icon.WORLD_DOWNLOAD,
+                partial(_give_world, worlds),
+                gui,
+                'a world file: everything as it is now',
+            )
+        site.allow_viewers(
+            self._button(
+                'Picture', viser.Icon.CAMERA, _give_picture, gui, 'what this browser shows, as PNG'
+            )
+        )
         self._takes = (
-            TakeButton(gui, 'video', 'video.mp4', 'what this browser shows, as MP4',
-                       VideoTake, complain),
-            TakeButton(gui, 'recording', 'recording.html',
-                       'the scene as it moves, as a page that needs no simulator',
-                       lambda _: SceneTake(site), complain))
+            TakeButton(
+                gui, 'video', 'video.mp4', 'what this browser shows, as MP4', VideoTake, complain
+            ),
+            TakeButton(
+                gui,
+                'recording',
+                'recording.html',
+                'the scene as it moves, as a page that needs no simulator',
+                lambda _: SceneTake(site),
+                complain,
+            ),
+        )
         site.on_client_disconnect(self._leave)
 
     def move(self, motion: ShownMotion) -> None:
@@ -67,8 +82,14 @@ class TakeAwayPanel(Panel):
         for take in self._takes:
             take.drop(client)
 
-    def _button(self, label: str, icon: Any, act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
-                gui: viser.GuiApi, hint: str) -> viser.GuiButtonHandle:
+    def _button(
+        self,
+        label: str,
+        icon: Any,
+        act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
+        gui: viser.GuiApi,
+        hint: str,
+    ) -> viser.GuiButtonHandle:
         def click(event: Click) -> None:
             client = event.client
             if client is None:
@@ -101,7 +122,8 @@ def _give_picture(client: viser.ClientHandle) -> None:
     camera = client.camera
     try:
         shown = client.get_render(
-            camera.image_height, camera.image_width, transport_format='png', timeout=PATIENCE)
+            camera.image_height, camera.image_width, transport_format='png', timeout=PATIENCE
+        )
     except (TimeoutError, RuntimeError) as error:
         raise SimError(f'the browser gave no picture: {error}') from error
     made = io.BytesIO()
@@ -112,8 +134,15 @@ def _give_picture(client: viser.ClientHandle) -> None:
 class TakeButton:
     """Starts and stops a take for one browser at a time."""
 
-    def __init__(self, gui: viser.GuiApi, called: str, file: str, hint: str,
-                 make: Callable[[viser.ClientHandle], Take], complain: Complain) -> None:
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        called: str,
+        file: str,
+        hint: str,
+        make: Callable[[viser.ClientHandle], Take],
+        complain: Complain,
+    ) -> None:
         self._called, self._file, self._make, self._complain = called, file, make, complain
         self._lock = threading.Lock()
         self._running: tuple[Take, viser.ClientHandle] | None = None
@@ -158,8 +187,10 @@ class TakeButton:
         try:
             self._running = (self._make(client), client)
         except ImportError as error:
-            self._complain(f"No {self._called}: the Python package '{error.name}' is not "
-                           'installed; ./rosbots setup does that.')
+            self._complain(
+                f"No {self._called}: the Python package '{error.name}' is not "
+                'installed; ./rosbots setup does that.'
+            )
 
     def _stop(self) -> tuple[Take, viser.ClientHandle] | None:
         with self._lock:

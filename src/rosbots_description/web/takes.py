@@ -50,8 +50,7 @@ class SceneTake:
     @property
     def is_full(self) -> bool:
         """Whether it has reached its greatest length."""
-        return (self._length >= LONGEST or self._poses >= MOST_POSES
-                or self._bytes >= MOST_BYTES)
+        return self._length >= LONGEST or self._poses >= MOST_POSES or self._bytes >= MOST_BYTES
 
     @property
     def _length(self) -> float:
@@ -87,7 +86,8 @@ class VideoTake:
         scale = min(1.0, WIDEST / max(camera.image_width, camera.image_height, 1))
         self._width, self._height = (  # even, as H.264 needs them
             max(2, 2 * round(scale * pixels / 2.0))
-            for pixels in (camera.image_width, camera.image_height))
+            for pixels in (camera.image_width, camera.image_height)
+        )
         self._file = io.BytesIO()
         self._container = av.open(self._file, 'w', format='mp4')
         self._stream = self._container.add_stream('libx264', rate=_MILLISECONDS)

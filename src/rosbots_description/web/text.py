@@ -19,9 +19,11 @@ _HIDDEN = {'Cc', 'Cf', 'Cs', 'Co', 'Cn', 'Zl', 'Zp'}
 
 def plain(text: str, most: int = MOST) -> str:
     """Return a text on one line of at most so many characters, without invisible ones."""
-    short = text if len(text) <= most else text[:most - 1] + '\u2026'
-    return ''.join(' ' if one in '\t\n\r' else
-                   '\ufffd' if unicodedata.category(one) in _HIDDEN else one for one in short)
+    short = text if len(text) <= most else text[: most - 1] + '\u2026'
+    return ''.join(
+        ' ' if one in '\t\n\r' else '\ufffd' if unicodedata.category(one) in _HIDDEN else one
+        for one in short
+    )
 
 
 def markup(text: str, most: int = MOST) -> str:
@@ -61,6 +63,8 @@ def _content(text: str, rows: Rows = (), bold: str = '') -> str:
 
 def table(rows: Rows) -> str:
     """Return a table in HTML, names at the left and values at the right; '' without rows."""
-    cells = ''.join(f'<tr><td>{markup(name)}</td><td style="text-align: right">{markup(value)}</td>'
-                    '</tr>' for name, value in rows)
+    cells = ''.join(
+        f'<tr><td>{markup(name)}</td><td style="text-align: right">{markup(value)}</td></tr>'
+        for name, value in rows
+    )
     return f'<table style="width: 100%; white-space: nowrap">{cells}</table>' if rows else ''

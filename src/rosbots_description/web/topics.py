@@ -45,8 +45,9 @@ class ShownTopics(Protocol):
 class TopicPanel(ReadingPanel):
     """A box for each topic."""
 
-    def __init__(self, site: viser.ViserServer, source: ShownTopics, models: Models,
-                 plural: str, none: str) -> None:
+    def __init__(
+        self, site: viser.ViserServer, source: ShownTopics, models: Models, plural: str, none: str
+    ) -> None:
         """Add the boxes.
 
         Args:
@@ -88,21 +89,30 @@ class TopicPanel(ReadingPanel):
             self._rows.pop(topic).remove()
         self._topics = topics
         self._note.visible = not topics or len(self._offered) > MOST
-        self._note.show(f'The first {MOST} of {len(self._offered)} {self._plural} are listed.'
-                        if topics else self._none)
+        self._note.show(
+            f'The first {MOST} of {len(self._offered)} {self._plural} are listed.'
+            if topics
+            else self._none
+        )
         with self._folder:
             for number, (topic, kind) in enumerate(topics.items()):
                 if topic not in self._rows:
-                    self._rows[topic] = ReadingRow(self._site, topic, kind, topic in self._checked,
-                                                  partial(self._choose, topic))
+                    self._rows[topic] = ReadingRow(
+                        self._site,
+                        topic,
+                        kind,
+                        topic in self._checked,
+                        partial(self._choose, topic),
+                    )
                 self._rows[topic].rank(number)
 
     def _choose(self, topic: str) -> None:
         with self._lock:
             row = self._rows.get(topic)
             if row is not None:  # it has not gone meanwhile
-                self._checked = (self._checked | {topic} if row.is_checked
-                                 else self._checked - {topic})
+                self._checked = (
+                    self._checked | {topic} if row.is_checked else self._checked - {topic}
+                )
                 self._read_chosen()
 
     def _chosen(self) -> set[str]:
@@ -140,9 +150,16 @@ class TopicPanel(ReadingPanel):
         pose = self._pose(topic, reading.frame)
         if pose is None:
             self._unplaced[topic] = reading
-        row.show(reading, pose, '' if pose is not None or not has_shape(reading) else (
-            'It is not in the scene: TF does not connect its frame '
-            f"'{reading.frame}' with a link."))
+        row.show(
+            reading,
+            pose,
+            ''
+            if pose is not None or not has_shape(reading)
+            else (
+                'It is not in the scene: TF does not connect its frame '
+                f"'{reading.frame}' with a link."
+            ),
+        )
 
     def _pose(self, topic: str, frame: str) -> Pose | None:
         """Return the pose of a frame in the world; None if it is not known."""

@@ -44,19 +44,29 @@ class Uploads:
         """
         name = plain(message.filename)
         if not (0 <= message.part_count <= MAX_PARTS and message.size_bytes >= 0) or (
-                message.transfer_uuid in self._running):
+            message.transfer_uuid in self._running
+        ):
             raise MalformedError('This is no file of the page.')
         if message.size_bytes > MAX_BYTES:
             raise RefusedError(_too_large(name))
         now = time.monotonic()
-        self._running = {key: one for key, one in self._running.items()
-                         if now - one.newest < PATIENCE}
+        self._running = {
+            key: one for key, one in self._running.items() if now - one.newest < PATIENCE
+        }
         mine = sum(one.owner is owner for one in self._running.values())
         if mine >= OF_ONE or len(self._running) >= IN_ALL:
-            raise RefusedError(f"'{name}' is not uploaded: {OF_ONE} files of a browser and "
-                               f'{IN_ALL} of all are taken at once; wait for them')
-        upload = Upload(owner, message.source_component_uuid, name, message.size_bytes,
-                        message.part_count, newest=now)
+            raise RefusedError(
+                f"'{name}' is not uploaded: {OF_ONE} files of a browser and "
+                f'{IN_ALL} of all are taken at once; wait for them'
+            )
+        upload = Upload(
+            owner,
+            message.source_component_uuid,
+            name,
+            message.size_bytes,
+            message.part_count,
+            newest=now,
+        )
         if upload.count == 0:
             return upload
         self._running[message.transfer_uuid] = upload
@@ -80,9 +90,11 @@ class Uploads:
         if upload.received > upload.size or (is_whole and upload.received < upload.size):
             del self._running[message.transfer_uuid]
             raise RefusedError(
-                _too_large(upload.name) if upload.received > MAX_BYTES else
-                f"'{upload.name}' has {upload.received} bytes of the {upload.size} that were "
-                'announced; upload it again')
+                _too_large(upload.name)
+                if upload.received > MAX_BYTES
+                else f"'{upload.name}' has {upload.received} bytes of the {upload.size} that were "
+                'announced; upload it again'
+            )
         if is_whole:
             del self._running[message.transfer_uuid]
         return upload, is_whole

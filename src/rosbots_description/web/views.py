@@ -30,20 +30,31 @@ DOUBLE = 0.4  # [s, wall] from the first click of a double click to the second, 
 class ViewPanel(Panel):
     """The view of a browser: as at first, from the top, from ahead, or as it is, but nearer."""
 
-    def __init__(self, site: Site, models: Models, selection: Selection,
-                 start: StartView) -> None:
+    def __init__(self, site: Site, models: Models, selection: Selection, start: StartView) -> None:
         self._models, self._selection = models, selection
         self._clicked = (-1, '', -math.inf)  # last: client, model, and when [s, monotonic]
         looks: dict[str, tuple[viser.IconName, str, Callable[[viser.CameraHandle], None]]] = {
             'Home': (Icon.HOME, 'H', lambda camera: look(camera, *start.choose(camera.aspect))),
-            'Top': (Icon.BOX_ALIGN_TOP, 'T',
-                    lambda camera: self._fit(camera, self._everything(), TOP)),
-            'Front': (Icon.BOX_ALIGN_BOTTOM, 'F',
-                      lambda camera: self._fit(camera, self._everything(), FRONT)),
-            'Fit all': (Icon.ARROWS_MAXIMIZE, 'X',
-                        lambda camera: self._fit(camera, self._everything())),
-            'Go to selection': (Icon.FOCUS_2, 'G',
-                                lambda camera: self._fit(camera, self._chosen())),
+            'Top': (
+                Icon.BOX_ALIGN_TOP,
+                'T',
+                lambda camera: self._fit(camera, self._everything(), TOP),
+            ),
+            'Front': (
+                Icon.BOX_ALIGN_BOTTOM,
+                'F',
+                lambda camera: self._fit(camera, self._everything(), FRONT),
+            ),
+            'Fit all': (
+                Icon.ARROWS_MAXIMIZE,
+                'X',
+                lambda camera: self._fit(camera, self._everything()),
+            ),
+            'Go to selection': (
+                Icon.FOCUS_2,
+                'G',
+                lambda camera: self._fit(camera, self._chosen()),
+            ),
         }
         for name, (icon, key, turn) in looks.items():
             button = site.gui.add_button(name, icon=icon)
@@ -71,12 +82,16 @@ class ViewPanel(Panel):
         return self._corners(chosen_links(model, self._selection.link)) if model else []
 
     def _corners(self, links: Iterable[ShownLink]) -> list[Vector]:
-        return [corner for link in links
-                for corner in corners(link.visuals, self._models.link_pose(link))]
+        return [
+            corner
+            for link in links
+            for corner in corners(link.visuals, self._models.link_pose(link))
+        ]
 
     @staticmethod
-    def _fit(camera: viser.CameraHandle, points: list[Vector],
-             direction: Vector | None = None) -> None:
+    def _fit(
+        camera: viser.CameraHandle, points: list[Vector], direction: Vector | None = None
+    ) -> None:
         """Look at points from a direction, by default the present one; not at nothing."""
         if not points:
             return
@@ -86,8 +101,11 @@ class ViewPanel(Panel):
         way = np.asarray(direction or camera.position - camera.look_at)
         narrow = min(math.tan(camera.fov / 2.0), math.tan(camera.fov / 2.0) * camera.aspect)
         far = ROOM * radius / math.sin(math.atan(narrow))
-        look(camera, as_vector(middle + far * way / max(float(np.linalg.norm(way)), 1e-9)),
-             as_vector(middle))
+        look(
+            camera,
+            as_vector(middle + far * way / max(float(np.linalg.norm(way)), 1e-9)),
+            as_vector(middle),
+        )
 
 
 def look(camera: viser.CameraHandle, eye: Vector, target: Vector) -> None:
@@ -95,8 +113,9 @@ def look(camera: viser.CameraHandle, eye: Vector, target: Vector) -> None:
     camera.position, camera.look_at = eye, target  # viser moves the second along with the first
 
 
-def _turn(turn: Callable[[viser.CameraHandle], None],
-          event: viser.GuiEvent[Any] | viser.CommandEvent) -> None:
+def _turn(
+    turn: Callable[[viser.CameraHandle], None], event: viser.GuiEvent[Any] | viser.CommandEvent
+) -> None:
     if event.client is not None:
         with event.client.atomic():
             turn(event.client.camera)

@@ -29,4 +29,5 @@ class WorldName(Panel):
             self._name = name
             self._gui.set_panel_label(plain(name))
             self._html.content = (
-                f'<img hidden src="data:," title="{markup(name)}" onerror="{SET_TITLE}">')
+                f'<img hidden src="data:," title="{markup(name)}" onerror="{SET_TITLE}">'
+            )

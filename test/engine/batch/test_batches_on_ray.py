@@ -40,10 +40,14 @@ def make(run):
 def scenario(folder, once=(), always=(), victims='[os.getpid()]'):
     """Return a scenario of twenty runs, of which some kill `victims`, by default their worker."""
     (folder / 'policy.py').write_text(MORTAL.format(once=once, always=always, victims=victims))
-    return pushed_ball(policy=f'{folder / "policy.py"}:make', repeat=10, seed=3, parameters={
-        'force': {'grid': [0.5, 3.0]}, 'start': {'uniform': [0.0, 1.0]}},
+    return pushed_ball(
+        policy=f'{folder / "policy.py"}:make',
+        repeat=10,
+        seed=3,
+        parameters={'force': {'grid': [0.5, 3.0]}, 'start': {'uniform': [0.0, 1.0]}},
         models=[{**pushed_ball()['models'][0], 'pose': {'x': '$start', 'z': 5.0}}],
-        conditions=['x_end - start > 0.5'])
+        conditions=['x_end - start > 0.5'],
+    )
 
 
 @pytest.fixture(autouse=True)
@@ -82,7 +86,8 @@ def test_messages_of_ray_stay_off_the_console_from_connecting_to_the_end(monkeyp
 
     def report(*_arguments, **_options):
         worker.print_to_stdstream(
-            {'lines': ['a worker died'], 'pid': 'raylet', 'is_err': False}, ignore_prefix=False)
+            {'lines': ['a worker died'], 'pid': 'raylet', 'is_err': False}, ignore_prefix=False
+        )
 
     monkeypatch.setattr(ray, 'init', report)
     monkeypatch.setattr(ray, 'shutdown', report)
@@ -101,9 +106,17 @@ def test_a_lost_machine_of_several_loses_no_run(tmp_path, monkeypatch):
         monkeypatch.setenv('RAY_health_check_period_ms', '500')  # by default it takes 15 s
         from ray.cluster_utils import Cluster
 
-        several = Cluster(initialize_head=True, head_node_args={
-            'num_cpus': 0, 'include_dashboard': False, 'include_log_monitor': False,
-            'no_monitor': True, 'temp_dir': place, 'object_store_memory': cluster.STORE_BYTES})
+        several = Cluster(
+            initialize_head=True,
+            head_node_args={
+                'num_cpus': 0,
+                'include_dashboard': False,
+                'include_log_monitor': False,
+                'no_monitor': True,
+                'temp_dir': place,
+                'object_store_memory': cluster.STORE_BYTES,
+            },
+        )
         try:
             for _ in range(2):
                 several.add_node(num_cpus=1, object_store_memory=cluster.STORE_BYTES)
@@ -122,9 +135,21 @@ def endless_command(folder):
     path = folder / 'endless.yaml'
     path.write_text(yaml.safe_dump(scenario(folder) | {'repeat': 5000}))
     command = subprocess.Popen(
-        [sys.executable, '-m', 'rosbots_description.cli.batch', str(path), '--workers', '1',
-         '--output', str(folder / 'rows')], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
+        [
+            sys.executable,
+            '-m',
+            'rosbots_description.cli.batch',
+            str(path),
+            '--workers',
+            '1',
+            '--output',
+            str(folder / 'rows'),
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)},
+    )
     try:
         wait_until(lambda: list(folder.glob('rows/rows/*.parquet')), 'rows', PATIENCE)
         yield command
@@ -140,32 +165,47 @@ def test_an_interrupted_command_leaves_its_rows_and_no_process(tmp_path):
         printed, said = command.communicate(timeout=PATIENCE)
     assert (command.returncode, printed) == (130, ''), said
     rows = parquet.read_table(tmp_path / 'rows' / 'rows').num_rows
-    assert said == (f'batch: interrupted; {rows} rows are in {tmp_path / "rows"}, and the same '
-                    'command makes the others\n')
-    wait_until(lambda: not any(Path(f'/proc/{one}').exists() for one in processes),
-               'the end of its processes', PATIENCE)
+    assert said == (
+        f'batch: interrupted; {rows} rows are in {tmp_path / "rows"}, and the same '
+        'command makes the others\n'
+    )
+    wait_until(
+        lambda: not any(Path(f'/proc/{one}').exists() for one in processes),
+        'the end of its processes',
+        PATIENCE,
+    )
 
 
 def test_a_batch_whose_ray_is_killed_ends_with_one_sentence(tmp_path):
     with endless_command(tmp_path) as command:
-        victims = [one for one in descendants(command.pid)
-                   if 'raylet/raylet' in Path(f'/proc/{one}/cmdline').read_text()]
+        victims = [
+            one
+            for one in descendants(command.pid)
+            if 'raylet/raylet' in Path(f'/proc/{one}/cmdline').read_text()
+        ]
         assert victims
         for victim in victims:
             os.kill(victim, signal.SIGKILL)
         printed, said = command.communicate(timeout=PATIENCE)
     assert command.returncode != 0
-    assert (printed, said) == ('', (
-        'batch: ended by Ray, of which a process has died, or by a signal; the rows so far are '
-        'kept, and the same command makes the others\n'))
+    assert (printed, said) == (
+        '',
+        (
+            'batch: ended by Ray, of which a process has died, or by a signal; the rows so far are '
+            'kept, and the same command makes the others\n'
+        ),
+    )
     assert parquet.read_table(tmp_path / 'rows' / 'rows').num_rows
 
 
-@pytest.mark.parametrize(('arguments', 'said'), [
-    ({'workers': -1}, 'workers takes at least 1, or 0 for none'),
-    ({'workers': 2, 'address': 'auto'}, 'only without an address'),
-    ({'address': '127.0.0.1:1'}, "no Ray cluster at '127.0.0.1:1': "),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'said'),
+    [
+        ({'workers': -1}, 'workers takes at least 1, or 0 for none'),
+        ({'workers': 2, 'address': 'auto'}, 'only without an address'),
+        ({'address': '127.0.0.1:1'}, "no Ray cluster at '127.0.0.1:1': "),
+    ],
+)
 def test_a_cluster_that_is_not_there_is_named(arguments, said):
     with pytest.raises(ClusterError, match=said):
         run(pushed_ball(), **arguments)

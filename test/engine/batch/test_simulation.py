@@ -8,9 +8,9 @@ from support.batches import BALL, FLOATING, MASS, full_disk, only_row, pushed_ba
 
 from rosbots_description.batch import ScenarioError, run
 
-BOX_OF_MESH = f'''<robot name="b"><link name="l"><inertial><mass value="1"/>
+BOX_OF_MESH = f"""<robot name="b"><link name="l"><inertial><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry>
-<mesh filename="file://{ROOT}/meshes/wheel.dae"/></geometry></collision></link></robot>'''
+<mesh filename="file://{ROOT}/meshes/wheel.dae"/></geometry></collision></link></robot>"""
 EXAMPLE = ROOT / 'config' / 'scenarios' / 'drive.yaml'
 
 
@@ -29,11 +29,13 @@ def floating(tmp_path):
 @pytest.fixture
 def policy(tmp_path):
     """Return a function that writes the body of a policy to a file, and returns its address."""
+
     def write(*lines):
         path = tmp_path / 'policy.py'
         body = '\n'.join(f'        {line}' for line in lines)
         path.write_text(f'def make(run):\n    def act(time, readings):\n{body}\n    return act\n')
         return f'{path}:make'
+
     return write
 
 
@@ -52,8 +54,9 @@ def test_a_condition_that_does_not_hold_fails_the_run_with_its_values():
 
 
 def test_a_parameter_in_a_condition_has_the_value_of_the_run():
-    scenario = pushed_ball(conditions=['x_end > $least'], parameters={
-        'force': 3.0, 'least': {'grid': [0.5, 1.0]}})
+    scenario = pushed_ball(
+        conditions=['x_end > $least'], parameters={'force': 3.0, 'least': {'grid': [0.5, 1.0]}}
+    )
     rows = run(scenario, workers=0).table.to_pylist()
     assert [row['outcome'] for row in rows] == ['passed', 'failed']
     assert rows[1]['reason'].startswith("'x_end > 1.0' does not hold: x_end = 0.7")
@@ -61,9 +64,14 @@ def test_a_parameter_in_a_condition_has_the_value_of_the_run():
 
 def test_commands_come_at_their_times(floating):
     push = {'topic': 'push', 'message': {'force': {'x': 2.0}}}
-    row = only_row(pushed_ball(
-        world=floating, commands=[{'at': 0.75, 'topic': 'push'}, {'at': 0.25, **push}],
-        record={'v': {'model': 'ball', 'link': 'ball', 'value': 'twist.linear.x'}}, conditions=[]))
+    row = only_row(
+        pushed_ball(
+            world=floating,
+            commands=[{'at': 0.75, 'topic': 'push'}, {'at': 0.25, **push}],
+            record={'v': {'model': 'ball', 'link': 'ball', 'value': 'twist.linear.x'}},
+            conditions=[],
+        )
+    )
     assert row['v_end'] == pytest.approx(2.0 / MASS * 0.5, rel=1e-6)
 
 
@@ -76,23 +84,45 @@ def test_readings_of_a_topic_are_recorded_at_its_rate():
 
 
 def test_a_policy_acts_each_period_on_what_is_recorded(policy, floating):
-    acts = policy("assert time < 0.2 or readings['truth'].pose.position[0] > 0.0",
-                  "return {'push': {'force': {'x': 4.0 - 10.0 * readings['v']}}}")
-    row = only_row(pushed_ball(
-        world=floating, policy=acts, commands=[], period=0.01, duration=3.0,
-        record={'v': {'model': 'ball', 'value': 'twist.linear.x'}, 'truth': {'topic': '/truth'}},
-        conditions=['abs(v_end - 0.4) < 1e-4']))
+    acts = policy(
+        "assert time < 0.2 or readings['truth'].pose.position[0] > 0.0",
+        "return {'push': {'force': {'x': 4.0 - 10.0 * readings['v']}}}",
+    )
+    row = only_row(
+        pushed_ball(
+            world=floating,
+            policy=acts,
+            commands=[],
+            period=0.01,
+            duration=3.0,
+            record={
+                'v': {'model': 'ball', 'value': 'twist.linear.x'},
+                'truth': {'topic': '/truth'},
+            },
+            conditions=['abs(v_end - 0.4) < 1e-4'],
+        )
+    )
     assert (row['outcome'], row['reason']) == ('passed', '')
 
 
 def test_time_begins_at_0_in_a_saved_world_and_a_short_period_is_a_step(policy, tmp_path):
     saved = tmp_path / 'saved.world'
-    saved.write_text(FLOATING.replace(
-        '</world>', '<state world_name="default"><sim_time>5 0</sim_time></state></world>'))
+    saved.write_text(
+        FLOATING.replace(
+            '</world>', '<state world_name="default"><sim_time>5 0</sim_time></state></world>'
+        )
+    )
     push = policy("return {'push': {'force': {'x': 2.0 if 0.25 <= time < 0.75 else 0.0}}}")
-    row = only_row(pushed_ball(
-        world=str(saved), policy=push, commands=[], period=0.0004, conditions=[],
-        record={'v': {'model': 'ball', 'value': 'twist.linear.x'}}))
+    row = only_row(
+        pushed_ball(
+            world=str(saved),
+            policy=push,
+            commands=[],
+            period=0.0004,
+            conditions=[],
+            record={'v': {'model': 'ball', 'value': 'twist.linear.x'}},
+        )
+    )
     assert row['reason'] == ''
     assert row['v_end'] == pytest.approx(2.0 / MASS * 0.5, rel=1e-6)
 
@@ -117,29 +147,50 @@ def test_no_message_of_the_library_reaches_the_console(capfd):
     assert logging.getLogger('rosbots_description').propagate
 
 
-@pytest.mark.parametrize(('changes', 'said'), [
-    ({'commands': [{'at': 0.0, 'topic': 'puhs', 'message': {}}]},
-     "commands[0]: no plugin takes commands on the topic 'puhs'; did you mean '/push'?"),
-    ({'record': {'x': {'topic': 'lie', 'value': 'range'}}, 'conditions': []},
-     "record 'x': no plugin sends on the topic 'lie'"),
-    ({'record': {'x': {'model': 'bell', 'value': 'pose.position.x'}}},
-     "record 'x': there is no model 'bell' in this world; its models: ground_plane, ball"),
-    ({'record': {'x': {'model': 'ball', 'joint': 'j', 'value': 'position'}}},
-     "record 'x': model 'ball' has no joint 'j'"),
-    ({'record': {'x': {'topic': 'truth', 'value': 'pose.z'}}},
-     "record 'x': 'pose.z' is not in a Odometry: there is no 'z' in it"),
-    ({'commands': [{'at': 0.1, 'topic': 'push', 'message': {'force': {'x': float('nan')}}}]},
-     'commands[0]: force.x is nan; numbers must be finite'),
-    ({'world': 'nowhere.world'}, "nowhere.world"),
-    ({'models': [{'name': 'ball', 'file': 'nowhere.urdf'}]}, 'nowhere.urdf'),
-    ({'models': [{'name': 'ball', 'text': '<robot name="r"/>'}]}, 'link'),
-    ({'policy': 'nowhere.py:make'}, "the policy 'nowhere.py:make' cannot be loaded: FileNotFound"),
-    ({'policy': 'math:make'}, "cannot be loaded: math has no function 'make'"),
-    ({'policy': 'make'}, "'make' is not a policy; it takes module:function or file.py:function"),
-    ({'policy': 'builtins:abs'}, "the policy 'builtins:abs' raised TypeError: bad operand"),
-    ({'conditions': ['1 / (x_min - x_min) > 1']}, 'cannot be computed: float division by zero'),
-    ({'conditions': ['x_end < 0 or 3']}, ''),
-])
+@pytest.mark.parametrize(
+    ('changes', 'said'),
+    [
+        (
+            {'commands': [{'at': 0.0, 'topic': 'puhs', 'message': {}}]},
+            "commands[0]: no plugin takes commands on the topic 'puhs'; did you mean '/push'?",
+        ),
+        (
+            {'record': {'x': {'topic': 'lie', 'value': 'range'}}, 'conditions': []},
+            "record 'x': no plugin sends on the topic 'lie'",
+        ),
+        (
+            {'record': {'x': {'model': 'bell', 'value': 'pose.position.x'}}},
+            "record 'x': there is no model 'bell' in this world; its models: ground_plane, ball",
+        ),
+        (
+            {'record': {'x': {'model': 'ball', 'joint': 'j', 'value': 'position'}}},
+            "record 'x': model 'ball' has no joint 'j'",
+        ),
+        (
+            {'record': {'x': {'topic': 'truth', 'value': 'pose.z'}}},
+            "record 'x': 'pose.z' is not in a Odometry: there is no 'z' in it",
+        ),
+        (
+            {'commands': [{'at': 0.1, 'topic': 'push', 'message': {'force': {'x': float('nan')}}}]},
+            'commands[0]: force.x is nan; numbers must be finite',
+        ),
+        ({'world': 'nowhere.world'}, 'nowhere.world'),
+        ({'models': [{'name': 'ball', 'file': 'nowhere.urdf'}]}, 'nowhere.urdf'),
+        ({'models': [{'name': 'ball', 'text': '<robot name="r"/>'}]}, 'link'),
+        (
+            {'policy': 'nowhere.py:make'},
+            "the policy 'nowhere.py:make' cannot be loaded: FileNotFound",
+        ),
+        ({'policy': 'math:make'}, "cannot be loaded: math has no function 'make'"),
+        (
+            {'policy': 'make'},
+            "'make' is not a policy; it takes module:function or file.py:function",
+        ),
+        ({'policy': 'builtins:abs'}, "the policy 'builtins:abs' raised TypeError: bad operand"),
+        ({'conditions': ['1 / (x_min - x_min) > 1']}, 'cannot be computed: float division by zero'),
+        ({'conditions': ['x_end < 0 or 3']}, ''),
+    ],
+)
 def test_bad_input_is_said_in_the_row(changes, said):
     row = only_row(pushed_ball(**changes))
     assert said in row['reason']
@@ -147,26 +198,40 @@ def test_bad_input_is_said_in_the_row(changes, said):
     assert row['outcome'] == ('error' if said else 'passed')
 
 
-@pytest.mark.parametrize(('lines', 'said'), [
-    (["raise KeyError('lost')"], "at 0 s raised KeyError: 'lost' (policy.py, line 3)"),
-    (['import json', "json.loads('{')"], 'line 1 column 2 (char 1) (policy.py, line 4)'),
-    (["return {'push': {'force': {'x': float('nan')}}}"],
-     "at 0 s, topic 'push': force.x is nan; numbers must be finite"),
-    (["return {'puhs': {}}"], "topic 'puhs': no plugin takes commands on the topic 'puhs'; did"),
-    (['return 3'], 'at 0 s returned 3; it returns messages by topic'),
-])
+@pytest.mark.parametrize(
+    ('lines', 'said'),
+    [
+        (["raise KeyError('lost')"], "at 0 s raised KeyError: 'lost' (policy.py, line 3)"),
+        (['import json', "json.loads('{')"], 'line 1 column 2 (char 1) (policy.py, line 4)'),
+        (
+            ["return {'push': {'force': {'x': float('nan')}}}"],
+            "at 0 s, topic 'push': force.x is nan; numbers must be finite",
+        ),
+        (
+            ["return {'puhs': {}}"],
+            "topic 'puhs': no plugin takes commands on the topic 'puhs'; did",
+        ),
+        (['return 3'], 'at 0 s returned 3; it returns messages by topic'),
+    ],
+)
 def test_what_a_policy_does_wrong_is_said_in_the_row(policy, lines, said):
     row = only_row(pushed_ball(policy=policy(*lines)))
     assert row['outcome'] == 'error'
     assert said in row['reason']
 
 
-@pytest.mark.parametrize(('text', 'said'), [
-    ('def make(run:', "policy.py:make' cannot be loaded: SyntaxError: '(' was never closed "
-     '(policy.py, line 1)'),
-    ('import nowhere', "ModuleNotFoundError: No module named 'nowhere' (policy.py, line 1)"),
-    (None, "policy.py'"),
-])
+@pytest.mark.parametrize(
+    ('text', 'said'),
+    [
+        (
+            'def make(run:',
+            "policy.py:make' cannot be loaded: SyntaxError: '(' was never closed "
+            '(policy.py, line 1)',
+        ),
+        ('import nowhere', "ModuleNotFoundError: No module named 'nowhere' (policy.py, line 1)"),
+        (None, "policy.py'"),
+    ],
+)
 def test_a_policy_that_cannot_be_loaded_is_said_in_the_row(tmp_path, text, said):
     if text:
         (tmp_path / 'policy.py').write_text(text)
@@ -174,7 +239,7 @@ def test_a_policy_that_cannot_be_loaded_is_said_in_the_row(tmp_path, text, said)
 
 
 def test_a_policy_may_be_a_dataclass(tmp_path, floating):
-    (tmp_path / 'policy.py').write_text('''from __future__ import annotations
+    (tmp_path / 'policy.py').write_text("""from __future__ import annotations
 from dataclasses import dataclass
 
 @dataclass
@@ -182,7 +247,7 @@ class Push:
     run: object
     def __call__(self, time, readings):
         return {'push': {'force': {'x': self.run.parameters['force']}}}
-''')
+""")
     row = only_row(pushed_ball(world=floating, policy=f'{tmp_path}/policy.py:Push', commands=[]))
     assert row['outcome'] == 'passed', row['reason']
 
@@ -196,8 +261,9 @@ def test_a_part_of_a_model_that_is_left_out_is_an_error():
 
 
 def test_the_runs_beside_a_bad_one_are_made():
-    scenario = pushed_ball(parameters={'world': {'grid': ['nowhere', 'empty']}, 'force': 3.0},
-                           world='$world')
+    scenario = pushed_ball(
+        parameters={'world': {'grid': ['nowhere', 'empty']}, 'force': 3.0}, world='$world'
+    )
     assert run(scenario, workers=0).outcomes == {'passed': 1, 'failed': 0, 'error': 1}
 
 
@@ -206,8 +272,12 @@ def test_a_full_disk_ends_runs_that_need_files_and_keeps_the_rows(tmp_path):
     model.write_text(BOX_OF_MESH)
     ball = tmp_path / 'ball.urdf'
     ball.write_text(BALL)
-    scenario = pushed_ball(models=[{'name': 'ball', 'file': '$file'}], commands=[], conditions=[],
-                           parameters={'file': {'grid': [str(model), str(ball)]}})
+    scenario = pushed_ball(
+        models=[{'name': 'ball', 'file': '$file'}],
+        commands=[],
+        conditions=[],
+        parameters={'file': {'grid': [str(model), str(ball)]}},
+    )
     with full_disk(3000):
         made = run(scenario, workers=0, output=tmp_path / 'out')
     assert made.outcomes == {'passed': 1, 'failed': 0, 'error': 1}

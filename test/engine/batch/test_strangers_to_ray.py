@@ -16,21 +16,36 @@ pytest.importorskip('ray')
 OTHER = 65534  # nobody
 # Calls of Ray's servers: what harms nothing is made with the token, too, to see that it is there.
 LOOKS = [
-    'InternalKVGcsService/InternalKVKeys', 'NodeInfoGcsService/GetAllNodeInfo',
-    'JobInfoGcsService/GetAllJobInfo', 'ActorInfoGcsService/GetAllActorInfo',
-    'NodeManagerService/GetNodeStats', 'ObjectManagerService/Pull',
+    'InternalKVGcsService/InternalKVKeys',
+    'NodeInfoGcsService/GetAllNodeInfo',
+    'JobInfoGcsService/GetAllJobInfo',
+    'ActorInfoGcsService/GetAllActorInfo',
+    'NodeManagerService/GetNodeStats',
+    'ObjectManagerService/Pull',
     'CoreWorkerService/GetCoreWorkerStats',
 ]
 HARM = [
-    'InternalKVGcsService/InternalKVPut', 'InternalKVGcsService/InternalKVDel',
-    'JobInfoGcsService/AddJob', 'ActorInfoGcsService/RegisterActor',
-    'ActorInfoGcsService/CreateActor', 'NodeInfoGcsService/UnregisterNode',
-    'NodeManagerService/RequestWorkerLease', 'NodeManagerService/ShutdownRaylet',
-    'ObjectManagerService/Push', 'ObjectManagerService/FreeObjects',
-    'CoreWorkerService/PushTask', 'CoreWorkerService/KillActor', 'CoreWorkerService/Exit',
+    'InternalKVGcsService/InternalKVPut',
+    'InternalKVGcsService/InternalKVDel',
+    'JobInfoGcsService/AddJob',
+    'ActorInfoGcsService/RegisterActor',
+    'ActorInfoGcsService/CreateActor',
+    'NodeInfoGcsService/UnregisterNode',
+    'NodeManagerService/RequestWorkerLease',
+    'NodeManagerService/ShutdownRaylet',
+    'ObjectManagerService/Push',
+    'ObjectManagerService/FreeObjects',
+    'CoreWorkerService/PushTask',
+    'CoreWorkerService/KillActor',
+    'CoreWorkerService/Exit',
 ]
-POSTS = ['/get_or_create_runtime_env', '/delete_runtime_env_if_possible', '/api/jobs/',
-         '/api/version', '/']
+POSTS = [
+    '/get_or_create_runtime_env',
+    '/delete_runtime_env_if_possible',
+    '/api/jobs/',
+    '/api/version',
+    '/',
+]
 # The other user's program: gRPC's HTTP/2 by hand, as their Python has no library for it.
 STRANGER = r"""
 import http.client, json, os, socket, struct, sys
@@ -129,14 +144,25 @@ def test_another_user_reaches_nothing_of_a_batch(place):
         token, inside = os.environ['RAY_AUTH_TOKEN'], list(place.rglob('*'))
         plan = {
             'ports': sorted(port for _, port in listening(family)),
-            'calls': [*[(call, by) for call in LOOKS + HARM for by in ('', 'x', token[:-1])],
-                      *[(call, token) for call in LOOKS]],
+            'calls': [
+                *[(call, by) for call in LOOKS + HARM for by in ('', 'x', token[:-1])],
+                *[(call, token) for call in LOOKS],
+            ],
             'posts': POSTS,
             'sockets': [str(path) for path in inside if path.is_socket()],
-            'folders': [str(path) for path in inside if path.is_dir()]}
+            'folders': [str(path) for path in inside if path.is_dir()],
+        }
         ended = subprocess.run(
-            ['/usr/bin/python3', '-I', '-c', STRANGER], check=False, input=json.dumps(plan),
-            text=True, capture_output=True, user=OTHER, group=OTHER, extra_groups=[], cwd='/')
+            ['/usr/bin/python3', '-I', '-c', STRANGER],
+            check=False,
+            input=json.dumps(plan),
+            text=True,
+            capture_output=True,
+            user=OTHER,
+            group=OTHER,
+            extra_groups=[],
+            cwd='/',
+        )
         assert ended.returncode == 0, ended.stderr
         said = json.loads(ended.stdout)
         lines = b''.join(Path(f'/proc/{one}/cmdline').read_bytes() for one in family)

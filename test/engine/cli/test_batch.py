@@ -15,13 +15,16 @@ def write(tmp_path):
         path = tmp_path / 'ball.yaml'
         path.write_text(yaml.safe_dump(pushed_ball(duration=0.1, **changes)))
         return [str(path), '--workers', '0', '--output', str(tmp_path / 'out')]
+
     return to_file
 
 
 def test_all_passed(write, tmp_path, capsys):
     assert batch.main(write(conditions=['x_end >= 0'])) == 0
     assert capsys.readouterr() == (
-        f'2 runs: 2 passed, 0 failed, 0 with an error\nrows: {tmp_path}/out/rows.parquet\n', '')
+        f'2 runs: 2 passed, 0 failed, 0 with an error\nrows: {tmp_path}/out/rows.parquet\n',
+        '',
+    )
 
 
 def test_progress_is_shown_on_a_terminal(write, monkeypatch):
@@ -34,8 +37,13 @@ def test_progress_is_shown_on_a_terminal(write, monkeypatch):
 
 
 def test_reasons_are_printed_the_most_frequent_first(write, capsys):
-    code = batch.main(write(conditions=[], world='$world', parameters={
-        'world': {'grid': ['empty', 'nowhere', 'nowhere']}, 'force': 1.0}))
+    code = batch.main(
+        write(
+            conditions=[],
+            world='$world',
+            parameters={'world': {'grid': ['empty', 'nowhere', 'nowhere']}, 'force': 1.0},
+        )
+    )
     assert code == 1
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == '3 runs: 1 passed, 0 failed, 2 with an error'
@@ -43,10 +51,13 @@ def test_reasons_are_printed_the_most_frequent_first(write, capsys):
     assert 'nowhere' in lines[1]
 
 
-@pytest.mark.parametrize(('changes', 'said'), [
-    ({'modles': []}, 'ball.yaml: Object contains unknown field `modles`'),
-    ({'parameters': {'force': {'gird': [1]}}}, "the parameter 'force' is of the kind 'gird'"),
-])
+@pytest.mark.parametrize(
+    ('changes', 'said'),
+    [
+        ({'modles': []}, 'ball.yaml: Object contains unknown field `modles`'),
+        ({'parameters': {'force': {'gird': [1]}}}, "the parameter 'force' is of the kind 'gird'"),
+    ],
+)
 def test_what_is_no_scenario_is_said_in_one_sentence(write, capsys, changes, said):
     assert batch.main(write(**changes)) == 2
     printed = capsys.readouterr()
@@ -62,8 +73,10 @@ def test_rows_of_another_scenario_are_left_alone(write, capsys):
     assert 'holds the rows of another scenario; name another folder' in capsys.readouterr().err
 
 
-@pytest.mark.parametrize('arguments', [
-    ['a.yaml', '--workers', '-1'], ['a.yaml', '--workers', '2', '--address', 'auto'], []])
+@pytest.mark.parametrize(
+    'arguments',
+    [['a.yaml', '--workers', '-1'], ['a.yaml', '--workers', '2', '--address', 'auto'], []],
+)
 def test_what_is_no_command_is_refused(arguments, capsys):
     with pytest.raises(SystemExit, match='2'):
         batch.main(arguments)

@@ -20,12 +20,16 @@ def world(tmp_path, monkeypatch):
 
 
 def test_a_world_file_is_mapped_without_ros(world, tmp_path, capsys):
-    assert save_map.main(['crate.yaml', '--world', world, '--resolution', '0.5',
-                          '--margin', '0.5']) == 0
-    assert capsys.readouterr() == (
-        'a map of 4 x 4 cells, 4 of them occupied: crate.yaml\n', '')
+    assert (
+        save_map.main(['crate.yaml', '--world', world, '--resolution', '0.5', '--margin', '0.5'])
+        == 0
+    )
+    assert capsys.readouterr() == ('a map of 4 x 4 cells, 4 of them occupied: crate.yaml\n', '')
     assert sorted(path.name for path in tmp_path.iterdir()) == [
-        'crate.pgm', 'crate.world', 'crate.yaml']
+        'crate.pgm',
+        'crate.world',
+        'crate.yaml',
+    ]
 
 
 def test_models_that_are_left_out_are_named(world, capsys):
@@ -33,14 +37,17 @@ def test_models_that_are_left_out_are_named(world, capsys):
     assert capsys.readouterr().out.endswith(' 0 of them occupied: crate.yaml\nleft out: crate\n')
 
 
-@pytest.mark.parametrize(('arguments', 'said'), [
-    (['--world', 'nowhere.world'], "no world file 'nowhere.world'"),
-    (['--without', 'nobody'], "there is no model 'nobody'; models: crate"),
-    (['--resolution', '-1'], 'a map takes a finite height, a positive resolution'),
-    (['--resolution', '1e-9'], 'choose a coarser resolution'),
-    (['--height', 'nan'], 'a map takes a finite height'),
-    ([], 'cannot be written: it exists already'),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'said'),
+    [
+        (['--world', 'nowhere.world'], "no world file 'nowhere.world'"),
+        (['--without', 'nobody'], "there is no model 'nobody'; models: crate"),
+        (['--resolution', '-1'], 'a map takes a finite height, a positive resolution'),
+        (['--resolution', '1e-9'], 'choose a coarser resolution'),
+        (['--height', 'nan'], 'a map takes a finite height'),
+        ([], 'cannot be written: it exists already'),
+    ],
+)
 def test_what_cannot_be_mapped_is_said_in_one_sentence(world, tmp_path, capsys, arguments, said):
     (tmp_path / 'crate.pgm').touch()
     named = [] if '--world' in arguments else ['--world', world]

@@ -23,8 +23,10 @@ def viewing(*arguments):
     """Yield the lines that the program prints, and the process."""
     process = subprocess.Popen(
         [sys.executable, '-m', 'rosbots_description.cli.view', *map(str, arguments), '--no-open'],
-        stderr=subprocess.PIPE, text=True,
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(ROOT / 'src'), *sys.path])})
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(ROOT / 'src'), *sys.path])},
+    )
     try:
         yield process
     finally:
@@ -49,12 +51,15 @@ def test_the_page_of_a_robot_opens_and_ends_with_a_signal(end):
         assert 'Traceback' not in process.stderr.read()
 
 
-@pytest.mark.parametrize(('name', 'content', 'sentence'), [
-    ('a.urdf', '<robot name="r"><link/></robot>', 'line 1'),
-    ('a.xacro', '<robot', 'xacro rejects it'),
-    ('a.world', '<sdf version="1.7"/>', '<world>'),
-    ('a.urdf', None, 'No such file'),
-])
+@pytest.mark.parametrize(
+    ('name', 'content', 'sentence'),
+    [
+        ('a.urdf', '<robot name="r"><link/></robot>', 'line 1'),
+        ('a.xacro', '<robot', 'xacro rejects it'),
+        ('a.world', '<sdf version="1.7"/>', '<world>'),
+        ('a.urdf', None, 'No such file'),
+    ],
+)
 def test_a_broken_file_ends_with_one_sentence(tmp_path, capsys, name, content, sentence):
     path = tmp_path / name
     if content is not None:
@@ -66,11 +71,14 @@ def test_a_broken_file_ends_with_one_sentence(tmp_path, capsys, name, content, s
     assert str(path) in line
 
 
-@pytest.mark.parametrize(('arguments', 'sentence'), [
-    (['x.urdf', 'height=2'], "'height=2' is no argument of xacro; write NAME:=VALUE"),
-    (['x.urdf', '--port', '99999'], 'no window at 127.0.0.1, port 99999'),
-    (['x.urdf', '--token-file', '/nowhere'], "no token in '/nowhere'"),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'sentence'),
+    [
+        (['x.urdf', 'height=2'], "'height=2' is no argument of xacro; write NAME:=VALUE"),
+        (['x.urdf', '--port', '99999'], 'no window at 127.0.0.1, port 99999'),
+        (['x.urdf', '--token-file', '/nowhere'], "no token in '/nowhere'"),
+    ],
+)
 def test_arguments_that_cannot_be_used_are_named(capsys, arguments, sentence):
     assert view.main(arguments) == 1
     assert capsys.readouterr().err.startswith(f'rosbots-view: {sentence}')

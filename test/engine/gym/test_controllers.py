@@ -13,15 +13,17 @@ JOINTS = ['joint1', 'joint2']
 GROUPS = {
     POSITION: 'position_controllers/JointGroupPositionController',
     VELOCITY: 'velocity_controllers/JointGroupVelocityController',
-    EFFORT: 'effort_controllers/JointGroupEffortController'}
+    EFFORT: 'effort_controllers/JointGroupEffortController',
+}
 
 
 class Reach(SimEnv):
     """An arm by its controllers."""
 
     def __init__(self, interface, parameters, **options):
-        super().__init__(robot=arm(interface), pose=Pose(), controllers=parameters, sensors=[],
-                         **options)
+        super().__init__(
+            robot=arm(interface), pose=Pose(), controllers=parameters, sensors=[], **options
+        )
 
     def score(self, _observation, _action):
         return 0.0, False
@@ -41,11 +43,15 @@ def make():
         env.close()
 
 
-@pytest.mark.parametrize(('interface', 'moved'), [
-    (POSITION, 'position'), (VELOCITY, 'velocity'), (EFFORT, 'effort')])
+@pytest.mark.parametrize(
+    ('interface', 'moved'), [(POSITION, 'position'), (VELOCITY, 'velocity'), (EFFORT, 'effort')]
+)
 def test_an_action_is_what_the_controller_takes(interface, moved, make):
-    env = make(interface, {'arm': {'type': GROUPS[interface], 'joints': JOINTS}},
-               actions={'arm': (0.5, 0.2)})
+    env = make(
+        interface,
+        {'arm': {'type': GROUPS[interface], 'joints': JOINTS}},
+        actions={'arm': (0.5, 0.2)},
+    )
     assert env.action_space.shape == (2,)
     env.reset(seed=1)
     env.step(np.array([1.0, -0.5], np.float32))
@@ -55,9 +61,13 @@ def test_an_action_is_what_the_controller_takes(interface, moved, make):
 
 def test_each_episode_begins_alike_and_repeats(make):
     gains = {name: {'p': 100.0, 'd': 10.0} for name in JOINTS}
-    env = make(POSITION, {
-        'arm': {'type': GROUPS[POSITION], 'joints': JOINTS},
-        'gazebo_ros_control': {'pid_gains': gains}})
+    env = make(
+        POSITION,
+        {
+            'arm': {'type': GROUPS[POSITION], 'joints': JOINTS},
+            'gazebo_ros_control': {'pid_gains': gains},
+        },
+    )
 
     def episode():
         env.reset(seed=3)
@@ -70,19 +80,34 @@ def test_each_episode_begins_alike_and_repeats(make):
 
 def test_several_controllers_are_a_dict(make):
     pid = {'p': 50.0, 'd': 5.0}
-    env = make(EFFORT, {
-        'one': {'type': 'effort_controllers/JointPositionController', 'joint': 'joint1',
-                'pid': pid},
-        'two': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint2'},
-        'states': {'type': 'joint_state_controller/JointStateController', 'publish_rate': 50}})
+    env = make(
+        EFFORT,
+        {
+            'one': {
+                'type': 'effort_controllers/JointPositionController',
+                'joint': 'joint1',
+                'pid': pid,
+            },
+            'two': {'type': 'effort_controllers/JointEffortController', 'joint': 'joint2'},
+            'states': {'type': 'joint_state_controller/JointStateController', 'publish_rate': 50},
+        },
+    )
     assert list(env.action_space.spaces) == ['one', 'two']
 
 
-@pytest.mark.parametrize(('parameters', 'options', 'error', 'text'), [
-    ({'arm': {'type': 'no/Type'}}, {}, SimError, 'does not exist'),
-    ({'arm': {'type': 3}}, {}, SimError, 'does not exist'),
-    ({'arm': {'type': GROUPS[EFFORT], 'joints': JOINTS}}, {'actions': {'leg': 1.0}},
-     NotFoundError, "takes no action 'leg'; its plugins and controllers with commands: arm")])
+@pytest.mark.parametrize(
+    ('parameters', 'options', 'error', 'text'),
+    [
+        ({'arm': {'type': 'no/Type'}}, {}, SimError, 'does not exist'),
+        ({'arm': {'type': 3}}, {}, SimError, 'does not exist'),
+        (
+            {'arm': {'type': GROUPS[EFFORT], 'joints': JOINTS}},
+            {'actions': {'leg': 1.0}},
+            NotFoundError,
+            "takes no action 'leg'; its plugins and controllers with commands: arm",
+        ),
+    ],
+)
 def test_what_is_wrong_is_said_in_a_sentence(parameters, options, error, text, make):
     with pytest.raises(error, match=text):
         make(EFFORT, parameters, **options)

@@ -14,8 +14,8 @@ from rosbots_description.gym import SimEnv
 from rosbots_description.sim import NotFoundError, Pose, SimError
 
 TASKS = ['FollowLine', 'GoToGoal', 'Maze', 'Wander']
-STONE = '''<robot name="stone"><link name="l"><inertial><mass value="1"/>
-  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'''
+STONE = """<robot name="stone"><link name="l"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
 
 
 CART = """<sdf version="1.6"><model name="cart">
@@ -68,12 +68,16 @@ def rollout(env, seed, steps=8):
     parts = [observation, info]
     for _ in range(steps):
         observation, reward, terminated, truncated, info = env.step(
-            actions.uniform(-1.0, 1.0, env.action_space.shape))
+            actions.uniform(-1.0, 1.0, env.action_space.shape)
+        )
         parts += [observation, info, {'reward': np.array([reward, terminated, truncated])}]
         if terminated or truncated:
             break
-    return b''.join(repr(value).encode() if isinstance(value, dict) else np.asarray(value).tobytes()
-                    for part in parts for _, value in sorted(part.items()))
+    return b''.join(
+        repr(value).encode() if isinstance(value, dict) else np.asarray(value).tobytes()
+        for part in parts
+        for _, value in sorted(part.items())
+    )
 
 
 @pytest.mark.parametrize('task', TASKS)
@@ -100,8 +104,9 @@ def test_a_period_runs_from_one_due_event_to_the_next_with_the_bits_of_single_st
     """The drive is due each 10 steps; between, no code but the engine's runs."""
     env = gymnasium.make('rosbots/GoToGoal-v0').unwrapped
     advance, physics, calls = env.world.run, env.world.engine.step, []
-    monkeypatch.setattr(env.world.engine, 'step', lambda steps: (calls.append(steps),
-                                                                 physics(steps)))
+    monkeypatch.setattr(
+        env.world.engine, 'step', lambda steps: (calls.append(steps), physics(steps))
+    )
     whole = rollout(env, 7, steps=3)
     assert sum(calls) == 300
     assert len(calls) <= 3 * 10 + 1
@@ -121,7 +126,10 @@ def test_a_step_is_exactly_one_period(forward):
 def test_observation_is_a_dict_of_what_the_sensors_give(forward):
     space = forward.observation_space
     assert {name: one.shape for name, one in space.items()} == {
-        'imu': (10,), 'laser': (361,), 'odometry': (6,)}
+        'imu': (10,),
+        'laser': (361,),
+        'odometry': (6,),
+    }
     observation, _ = forward.reset(seed=0)
     assert observation in space
     for _ in range(10):
@@ -131,12 +139,15 @@ def test_observation_is_a_dict_of_what_the_sensors_give(forward):
     assert observation['imu'][9] == pytest.approx(9.8, abs=2.0)
 
 
-@pytest.mark.parametrize(('action', 'said'), [
-    (np.zeros(3), "'differential_drive_controller' takes 2 numbers from -1 to 1"),
-    ('fast', 'takes 2 numbers'),
-    (np.array([np.nan, 0.0]), 'takes finite numbers; it got [nan, 0.0]'),
-    (np.array([0.0, np.inf]), 'takes finite numbers'),
-])
+@pytest.mark.parametrize(
+    ('action', 'said'),
+    [
+        (np.zeros(3), "'differential_drive_controller' takes 2 numbers from -1 to 1"),
+        ('fast', 'takes 2 numbers'),
+        (np.array([np.nan, 0.0]), 'takes finite numbers; it got [nan, 0.0]'),
+        (np.array([0.0, np.inf]), 'takes finite numbers'),
+    ],
+)
 def test_action_that_cannot_be_given_is_named(forward, action, said):
     forward.reset(seed=0)
     with pytest.raises(ValueError, match=re.escape(said)) as error:
@@ -144,17 +155,32 @@ def test_action_that_cannot_be_given_is_named(forward, action, said):
     assert '\n' not in str(error.value)
 
 
-@pytest.mark.parametrize(('options', 'kind', 'said'), [
-    ({'sensors': ['radar']}, NotFoundError, "no sensor 'radar'; what can be observed: odometry"),
-    ({'actions': {'sails': 1.0}}, NotFoundError, "no action 'sails'; its plugins and controllers"),
-    ({'actions': {'differential_drive_controller': (1.0, -1.0)}}, ValueError, 'positive numbers'),
-    ({'world': 'nowhere'}, NotFoundError, 'nowhere'),
-    ({'robot': '<robot name="r"/>'}, SimError, 'link'),
-    ({'robot': STONE}, SimError, 'takes commands'),
-    ({'period': 0.1234567}, ValueError, 'multiple of the step size'),
-    ({'period': float('nan')}, ValueError, 'period is nan'),
-    ({'render_mode': 'human'}, ValueError, "render_mode is 'human'"),
-])
+@pytest.mark.parametrize(
+    ('options', 'kind', 'said'),
+    [
+        (
+            {'sensors': ['radar']},
+            NotFoundError,
+            "no sensor 'radar'; what can be observed: odometry",
+        ),
+        (
+            {'actions': {'sails': 1.0}},
+            NotFoundError,
+            "no action 'sails'; its plugins and controllers",
+        ),
+        (
+            {'actions': {'differential_drive_controller': (1.0, -1.0)}},
+            ValueError,
+            'positive numbers',
+        ),
+        ({'world': 'nowhere'}, NotFoundError, 'nowhere'),
+        ({'robot': '<robot name="r"/>'}, SimError, 'link'),
+        ({'robot': STONE}, SimError, 'takes commands'),
+        ({'period': 0.1234567}, ValueError, 'multiple of the step size'),
+        ({'period': float('nan')}, ValueError, 'period is nan'),
+        ({'render_mode': 'human'}, ValueError, "render_mode is 'human'"),
+    ],
+)
 def test_environment_that_cannot_be_made_is_named(options, kind, said):
     with pytest.raises(kind) as error:
         SimEnv(**options)
@@ -162,11 +188,14 @@ def test_environment_that_cannot_be_made_is_named(options, kind, said):
 
 
 def test_warnings_of_a_description_are_one_message_once_in_a_process(caplog):
-    wheels = [f'<robot name="{name}"><link name="l"><inertial><mass value="1"/><inertia ixx="1" '
-              'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><gazebo><plugin '
-              'name="push" filename="libgazebo_ros_planar_move.so"><unread/><strange/></plugin>'
-              '<plugin name="other" filename="libgazebo_ros_planar_move.so"><unread/></plugin>'
-              f'</gazebo></robot>' for name in ('one', 'two')]
+    wheels = [
+        f'<robot name="{name}"><link name="l"><inertial><mass value="1"/><inertia ixx="1" '
+        'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><gazebo><plugin '
+        'name="push" filename="libgazebo_ros_planar_move.so"><unread/><strange/></plugin>'
+        '<plugin name="other" filename="libgazebo_ros_planar_move.so"><unread/></plugin>'
+        f'</gazebo></robot>'
+        for name in ('one', 'two')
+    ]
     found = []
     for text in (wheels[0], wheels[0], wheels[1].replace('strange', 'odd')):
         caplog.clear()
@@ -182,8 +211,7 @@ def test_warnings_of_a_description_are_one_message_once_in_a_process(caplog):
 def test_errors_of_a_description_are_logged_each_time(caplog):
     for _ in range(2):
         caplog.clear()
-        Push(CART.replace('libgazebo_ros_force.so', 'libgazebo_ros_nothing.so'),
-             settle=0.0).close()
+        Push(CART.replace('libgazebo_ros_force.so', 'libgazebo_ros_nothing.so'), settle=0.0).close()
         assert [record.levelname for record in caplog.records].count('ERROR') == 1
 
 
@@ -205,8 +233,9 @@ def test_imu_of_a_new_episode_is_that_of_its_start(forward):
         forward.step(np.array([0.0, 1.0]))
     forward.begin = lambda _options: forward.place(0.0, 0.0, 1.0)
     observation, _ = forward.reset(seed=0)
-    assert observation['imu'][:4] == pytest.approx((0.0, 0.0, math.sin(0.5), math.cos(0.5)),
-                                                   abs=0.02)
+    assert observation['imu'][:4] == pytest.approx(
+        (0.0, 0.0, math.sin(0.5), math.cos(0.5)), abs=0.02
+    )
     assert observation['imu'][4:] == pytest.approx((0.0, 0.0, 0.0, 0.0, 0.0, 9.8), abs=0.1)
 
 
@@ -224,18 +253,27 @@ def test_episode_is_truncated_when_the_world_diverges_and_the_next_is_as_in_a_ne
 
 
 def test_plugins_and_joints_that_take_commands_are_a_dict_of_actions():
-    env = Push(CART, actions={'move': (2.0, 1.0, 3.0), 'push': 8.0, 'hinge': 0.5},
-               sensors=['odometry'], settle=0.0)
+    env = Push(
+        CART,
+        actions={'move': (2.0, 1.0, 3.0), 'push': 8.0, 'hinge': 0.5},
+        sensors=['odometry'],
+        settle=0.0,
+    )
     assert {name: one.shape for name, one in env.action_space.items()} == {
-        'move': (3,), 'push': (6,), 'hinge': (1,)}
+        'move': (3,),
+        'push': (6,),
+        'hinge': (1,),
+    }
     still = {'move': np.zeros(3), 'push': np.zeros(6), 'hinge': np.zeros(1)}
     env.reset(seed=0)
     for _ in range(10):
         env.step({**still, 'move': np.array([0.5, 0.25, 0.0])})
     assert env.pose[:2] == pytest.approx((1.0, 0.25), abs=0.02)  # shares of the limits, for 1 s
-    for action, said in (({'move': np.zeros(3)}, "the action has no 'push'"),
-                         (np.zeros(3), 'an action is a dict of move, push, hinge'),
-                         ({**still, 'hinge': np.zeros(2)}, "'hinge' takes 1 numbers")):
+    for action, said in (
+        ({'move': np.zeros(3)}, "the action has no 'push'"),
+        (np.zeros(3), 'an action is a dict of move, push, hinge'),
+        ({**still, 'hinge': np.zeros(2)}, "'hinge' takes 1 numbers"),
+    ):
         with pytest.raises(ValueError, match='action') as error:
             env.step(action)
         assert said in str(error.value)
@@ -243,8 +281,12 @@ def test_plugins_and_joints_that_take_commands_are_a_dict_of_actions():
 
 
 def test_effort_of_a_joint_acts_until_the_next_action():
-    env = Push(CART.replace('libgazebo_ros_planar_move.so', 'libgazebo_ros_p3d.so'),
-               actions={'hinge': 0.5}, sensors=['bumper'], settle=0.2)
+    env = Push(
+        CART.replace('libgazebo_ros_planar_move.so', 'libgazebo_ros_p3d.so'),
+        actions={'hinge': 0.5},
+        sensors=['bumper'],
+        settle=0.2,
+    )
     env.reset(seed=0)
     hinge, speeds = env.robot.joint('hinge'), []
     for share in (-1.0, -1.0, 0.0, 0.0):

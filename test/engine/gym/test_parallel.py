@@ -171,8 +171,11 @@ def test_what_a_task_raises_is_raised_here_and_the_environments_can_be_used_on(c
     assert observations['odometry'].shape == (2, 6)
     assert infos['worker_restarted'].tolist() == [False, True]
     assert 'ended with code 0' in caplog.text
-    for action, said in ((np.full((2, 2), np.nan), 'that at [0, 0] is nan'),
-                         (np.zeros((3, 2)), 'shape (2, 2)'), ('fast', 'shape (2, 2)')):
+    for action, said in (
+        (np.full((2, 2), np.nan), 'that at [0, 0] is nan'),
+        (np.zeros((3, 2)), 'shape (2, 2)'),
+        ('fast', 'shape (2, 2)'),
+    ):
         with pytest.raises(ValueError, match='actions are') as error:
             envs.step(action)
         assert said in str(error.value)
@@ -192,15 +195,20 @@ def test_environments_that_cannot_be_made_are_named():
 @pytest.mark.parametrize('mode', ['vector_entry_point', 'async'])
 def test_no_worker_outlives_a_parent_that_is_killed(mode):
     program = (
-        "import gymnasium, sys, time, rosbots_description.gym\n"
+        'import gymnasium, sys, time, rosbots_description.gym\n'
         "envs = gymnasium.make_vec('rosbots/Wander-v0', num_envs=3, settle=0.1,\n"
         f"                          vectorization_mode='{mode}')\n"
-        "envs.reset(seed=0)\n"
-        "print(*(process.pid for process in envs.processes), flush=True)\n"
-        "while True: envs.step(envs.action_space.sample())\n")
-    with subprocess.Popen([sys.executable, '-c', program], stdout=subprocess.PIPE, text=True,
-                          stderr=subprocess.DEVNULL,
-                          env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}) as parent:
+        'envs.reset(seed=0)\n'
+        'print(*(process.pid for process in envs.processes), flush=True)\n'
+        'while True: envs.step(envs.action_space.sample())\n'
+    )
+    with subprocess.Popen(
+        [sys.executable, '-c', program],
+        stdout=subprocess.PIPE,
+        text=True,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
+    ) as parent:
         pids = [int(word) for word in parent.stdout.readline().split()]
         assert len(pids) == 3
         assert all(map(is_running, pids))

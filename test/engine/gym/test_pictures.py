@@ -40,8 +40,9 @@ def green(picture):
 def test_ground_has_lines_one_metre_apart(world):
     row = Illustrator(world).take(ABOVE, (0.2, 0.0, 0.0), ())[200].mean(axis=1)
     dark = np.flatnonzero(row < np.median(row) - 10.0)
-    lines = np.array([part.mean() for part in np.split(
-        dark, np.flatnonzero(np.diff(dark) > 5) + 1)])
+    lines = np.array(
+        [part.mean() for part in np.split(dark, np.flatnonzero(np.diff(dark) > 5) + 1)]
+    )
     assert len(lines) >= 6
     metres = (lines - 319.5) / SCALE
     assert metres == pytest.approx(np.round(metres), abs=0.03)

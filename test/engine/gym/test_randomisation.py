@@ -10,9 +10,16 @@ from rosbots_description.sim.formats.urdf import expand_xacro
 from rosbots_description.sim.resources import PackageSearch
 
 NOISY = expand_xacro(str(XACRO), {'laser': 'true'}, PackageSearch()).replace(
-    '</scan>', '</scan><noise><type>gaussian</type><stddev>0.01</stddev></noise>')
-ALL = Randomisation(mass=(0.5, 2.0), friction=(0.5, 0.9), light=(0.2, 1.0), noise=(2.0, 4.0),
-                    pose=(0.5, 0.5, 3.0), obstacles={'barrel': 0.5, 'table': 0.3})
+    '</scan>', '</scan><noise><type>gaussian</type><stddev>0.01</stddev></noise>'
+)
+ALL = Randomisation(
+    mass=(0.5, 2.0),
+    friction=(0.5, 0.9),
+    light=(0.2, 1.0),
+    noise=(2.0, 4.0),
+    pose=(0.5, 0.5, 3.0),
+    obstacles={'barrel': 0.5, 'table': 0.3},
+)
 
 
 class Still(SimEnv):
@@ -32,9 +39,16 @@ def env():
 def state(env):
     """Return what may differ."""
     world, robot = env.world, env.robot
-    return (robot.mass_scale, [link.friction_scale for link in robot.links.values()],
-            dict(world.lights), robot.sensor('laser').noise_scale, robot.pose,
-            world.model('barrel').pose, world.model('table').pose, world.seed)
+    return (
+        robot.mass_scale,
+        [link.friction_scale for link in robot.links.values()],
+        dict(world.lights),
+        robot.sensor('laser').noise_scale,
+        robot.pose,
+        world.model('barrel').pose,
+        world.model('table').pose,
+        world.seed,
+    )
 
 
 def test_everything_is_drawn_within_its_range_by_the_seed(env):
@@ -79,22 +93,29 @@ def test_noise_of_a_sensor_differs_between_seeds_only():
     assert scans[0] == scans[2] != scans[1]
 
 
-@pytest.mark.parametrize(('given', 'kind', 'said'), [
-    ({'mass': (0.0, 1.0)}, ValueError, 'randomisation of mass is (0.0, 1.0)'),
-    ({'friction': (2.0, 1.0)}, ValueError, 'range of factors'),
-    ({'light': (1.0, float('nan'))}, ValueError, 'range of factors'),
-    ({'mass': 1.5}, ValueError, 'randomisation of mass is 1.5; it is a range of factors'),
-    ({'pose': (-1.0, 0.0, 0.0)}, ValueError, 'numbers from 0 to 1e+06'),
-    ({'pose': (1e308, 0.0, 0.0)}, ValueError, 'randomisation of pose is (1e+308, 0.0, 0.0)'),
-    ({'pose': (0.0, 0.0, 10**400)}, ValueError, 'numbers from 0 to 1e+06'),
-    ({'obstacles': {'barrel': 1e308}}, ValueError, 'numbers from 0 to 1e+06'),
-    ({'mass': (1.0, 1e308)}, ValueError, 'both above 0 and at most 1e+06'),
-    ({'noise': (1.0, 10**400)}, ValueError, 'both above 0 and at most 1e+06'),
-    ({'pose': (1.0, 1.0)}, ValueError, 'randomisation of pose is (1.0, 1.0); it is three shifts'),
-    ({'obstacles': ['barrel']}, ValueError, "is ['barrel']; it is a dict of shifts by names"),
-    ({'obstacles': {'piano': 1.0}}, NotFoundError, "no model 'piano'"),
-    ({'noise': (1.0, 2.0)}, SimError, 'no sensor'),
-])
+@pytest.mark.parametrize(
+    ('given', 'kind', 'said'),
+    [
+        ({'mass': (0.0, 1.0)}, ValueError, 'randomisation of mass is (0.0, 1.0)'),
+        ({'friction': (2.0, 1.0)}, ValueError, 'range of factors'),
+        ({'light': (1.0, float('nan'))}, ValueError, 'range of factors'),
+        ({'mass': 1.5}, ValueError, 'randomisation of mass is 1.5; it is a range of factors'),
+        ({'pose': (-1.0, 0.0, 0.0)}, ValueError, 'numbers from 0 to 1e+06'),
+        ({'pose': (1e308, 0.0, 0.0)}, ValueError, 'randomisation of pose is (1e+308, 0.0, 0.0)'),
+        ({'pose': (0.0, 0.0, 10**400)}, ValueError, 'numbers from 0 to 1e+06'),
+        ({'obstacles': {'barrel': 1e308}}, ValueError, 'numbers from 0 to 1e+06'),
+        ({'mass': (1.0, 1e308)}, ValueError, 'both above 0 and at most 1e+06'),
+        ({'noise': (1.0, 10**400)}, ValueError, 'both above 0 and at most 1e+06'),
+        (
+            {'pose': (1.0, 1.0)},
+            ValueError,
+            'randomisation of pose is (1.0, 1.0); it is three shifts',
+        ),
+        ({'obstacles': ['barrel']}, ValueError, "is ['barrel']; it is a dict of shifts by names"),
+        ({'obstacles': {'piano': 1.0}}, NotFoundError, "no model 'piano'"),
+        ({'noise': (1.0, 2.0)}, SimError, 'no sensor'),
+    ],
+)
 def test_randomisation_that_cannot_be_is_named(given, kind, said):
     with pytest.raises(kind) as error:
         Still(randomise=Randomisation(**given), settle=0.1)
@@ -108,8 +129,12 @@ def test_anything_but_a_randomisation_is_refused(given):
 
 
 def test_robot_is_put_where_it_overlaps_nothing():
-    made = Still('room', pose=Pose((0.7, -1.2, 0.5)), settle=0.3,
-                 randomise=Randomisation(pose=(0.6, 0.0, 0.0)))
+    made = Still(
+        'room',
+        pose=Pose((0.7, -1.2, 0.5)),
+        settle=0.3,
+        randomise=Randomisation(pose=(0.6, 0.0, 0.0)),
+    )
     for seed in range(30):  # the column is a quarter of a metre ahead
         made.reset(seed=seed)
         assert not made.world.overlaps(made.robot).keys() & {'column'}

@@ -44,7 +44,8 @@ def test_goal_ahead_is_reached_and_the_way_is_rewarded(task):
     observation, _ = task.reset(options={'start': (1.0, 0.5, 0.3), 'goal': (-0.5, -1.0)})
     bearing = math.atan2(-1.5, -1.5) - 0.3
     assert observation['goal'] == pytest.approx(
-        (math.hypot(1.5, 1.5), math.cos(bearing), math.sin(bearing)), abs=0.02)
+        (math.hypot(1.5, 1.5), math.cos(bearing), math.sin(bearing)), abs=0.02
+    )
 
 
 @pytest.mark.parametrize('task', ['GoToGoal'], indirect=True)
@@ -89,8 +90,11 @@ def test_new_squares_are_rewarded_once(task):
 def test_what_the_way_out_becomes_shorter_is_rewarded(task):
     _, info = task.reset(seed=0)
     assert 20.0 < info['left'] < 100.0
-    places = {(x, y): task.reset(options={'start': (x, y, 0.0)})[1]['left']
-              for x in range(-6, 7, 2) for y in range(-6, 7, 2)}
+    places = {
+        (x, y): task.reset(options={'start': (x, y, 0.0)})[1]['left']
+        for x in range(-6, 7, 2)
+        for y in range(-6, 7, 2)
+    }
     assert all(map(math.isfinite, places.values()))
     assert places[6, 6] == 2.0  # the last cell; the goal is in the next one
     assert max(abs(places[x, y] - places[x + 2, y]) for x, y in places if x < 6) > 2.0  # walls
@@ -100,10 +104,12 @@ def test_what_the_way_out_becomes_shorter_is_rewarded(task):
 
 @pytest.mark.parametrize('task', ['GoToGoal'], indirect=True)
 def test_option_that_cannot_be_is_named(task):
-    for options, said in (({'strat': (0, 0, 0)}, "no option 'strat'; GoToGoal takes start, goal"),
-                          ({'goal': (1.0, 2.0, 3.0)}, "'goal' takes 2 finite numbers"),
-                          ({'start': 'here'}, "'start' takes 3 finite numbers; it got 'here'"),
-                          ({'start': (0.0, 0.0, math.nan)}, '3 finite numbers')):
+    for options, said in (
+        ({'strat': (0, 0, 0)}, "no option 'strat'; GoToGoal takes start, goal"),
+        ({'goal': (1.0, 2.0, 3.0)}, "'goal' takes 2 finite numbers"),
+        ({'start': 'here'}, "'start' takes 3 finite numbers; it got 'here'"),
+        ({'start': (0.0, 0.0, math.nan)}, '3 finite numbers'),
+    ):
         with pytest.raises(ValueError, match='option') as error:
             task.reset(options=options)
         assert said in str(error.value)

@@ -12,11 +12,15 @@ LINK = """<link name="{name}"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{shape}</link>"""
 BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 URDF = f'<robot name="crate">{LINK.format(name="box", shape=BOX)}</robot>'
-MODEL = ('<sdf version="1.7"><model name="ball"><pose>1 2 7 0 0 0</pose><link name="l"><collision '
-         'name="c"><geometry><sphere><radius>0.5</radius></sphere></geometry></collision></link>'
-         '</model></sdf>')
-WORLD = ('<sdf version="1.7"><world name="w"><include><uri>model://ground_plane</uri></include>'
-         '<include><uri>model://nowhere</uri></include></world></sdf>')
+MODEL = (
+    '<sdf version="1.7"><model name="ball"><pose>1 2 7 0 0 0</pose><link name="l"><collision '
+    'name="c"><geometry><sphere><radius>0.5</radius></sphere></geometry></collision></link>'
+    '</model></sdf>'
+)
+WORLD = (
+    '<sdf version="1.7"><world name="w"><include><uri>model://ground_plane</uri></include>'
+    '<include><uri>model://nowhere</uri></include></world></sdf>'
+)
 
 
 def written(folder, name, text):
@@ -25,9 +29,13 @@ def written(folder, name, text):
     return path
 
 
-@pytest.mark.parametrize(('name', 'text', 'height'), [
-    ('crate.urdf', URDF, 0.5), ('ball.sdf', MODEL, 0.5),
-])
+@pytest.mark.parametrize(
+    ('name', 'text', 'height'),
+    [
+        ('crate.urdf', URDF, 0.5),
+        ('ball.sdf', MODEL, 0.5),
+    ],
+)
 def test_a_model_stands_on_the_ground(tmp_path, name, text, height):
     opened = open_file(written(tmp_path, name, text))
     with opened.world as world:
@@ -40,7 +48,8 @@ def test_a_model_stands_on_the_ground(tmp_path, name, text, height):
 
 def test_xacro_takes_arguments(tmp_path):
     text = URDF.replace('<robot', '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"', 1).replace(
-        'name="box"', 'name="$(arg link)"')
+        'name="box"', 'name="$(arg link)"'
+    )
     with open_file(written(tmp_path, 'a.xacro', text), {'link': 'given'}).world as world:
         assert list(world.model('crate').links) == ['given']
 
@@ -53,8 +62,11 @@ def test_the_robot_of_this_package_has_all_its_parts():
 
 
 def test_a_robot_that_is_fixed_to_the_world_stays_where_it_is_described(tmp_path):
-    text = URDF.replace('</robot>', '<link name="world"/><joint name="j" type="fixed">'
-                        '<parent link="world"/><child link="box"/></joint></robot>')
+    text = URDF.replace(
+        '</robot>',
+        '<link name="world"/><joint name="j" type="fixed">'
+        '<parent link="world"/><child link="box"/></joint></robot>',
+    )
     with open_file(written(tmp_path, 'a.urdf', text)).world as world:
         assert world.model('crate').pose.position[2] == 0.0
 
@@ -81,7 +93,9 @@ def test_meshes_beside_the_file_are_found(tmp_path):
         written(tmp_path, f'{there}.urdf', text)
     (tmp_path / 'cube.stl').write_text(
         'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1\n'
-        'endloop\nendfacet\nendsolid s\n', encoding='utf-8')
+        'endloop\nendfacet\nendsolid s\n',
+        encoding='utf-8',
+    )
     with open_file(tmp_path / 'cube.stl.urdf').world:
         pass
     opened = open_file(tmp_path / 'missing.stl.urdf')
@@ -91,8 +105,9 @@ def test_meshes_beside_the_file_are_found(tmp_path):
 
 
 def test_faults_are_collected_and_not_logged_meanwhile(tmp_path, caplog):
-    text = URDF.replace('</robot>', '<gazebo><plugin name="p" filename="libnone.so"/></gazebo>'
-                        '</robot>')
+    text = URDF.replace(
+        '</robot>', '<gazebo><plugin name="p" filename="libnone.so"/></gazebo></robot>'
+    )
     with caplog.at_level(logging.WARNING):
         opened = open_file(written(tmp_path, 'a.urdf', text))
     with opened.world:
@@ -100,13 +115,22 @@ def test_faults_are_collected_and_not_logged_meanwhile(tmp_path, caplog):
         assert caplog.records == []
 
 
-@pytest.mark.parametrize(('name', 'text', 'sentence'), [
-    ('a.urdf', '<robot><', 'not well-formed'), ('a.urdf', '<robot name="r"/>', 'link'),
-    ('a.urdf', '', 'not a model'), ('a.sdf', '<sdf version="1.7"/>', 'model'),
-    ('a.world', '<sdf version="1.7"/>', '<world>'), ('a.txt', 'text', 'not a model'),
-    ('a.xacro', '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:x/></robot>',
-     'x'),
-])
+@pytest.mark.parametrize(
+    ('name', 'text', 'sentence'),
+    [
+        ('a.urdf', '<robot><', 'not well-formed'),
+        ('a.urdf', '<robot name="r"/>', 'link'),
+        ('a.urdf', '', 'not a model'),
+        ('a.sdf', '<sdf version="1.7"/>', 'model'),
+        ('a.world', '<sdf version="1.7"/>', '<world>'),
+        ('a.txt', 'text', 'not a model'),
+        (
+            'a.xacro',
+            '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:x/></robot>',
+            'x',
+        ),
+    ],
+)
 def test_what_cannot_be_simulated_is_one_sentence(tmp_path, name, text, sentence):
     with pytest.raises(SimError, match=sentence) as raised:
         open_file(written(tmp_path, name, text))

@@ -75,8 +75,9 @@ def test_run_in_a_cell_shows_the_motion_and_takes_commands(events):
         viewer.view.open(changes.append, motions.append)
         viewer.time.set_speed(0.0)
         done = []
-        threading.Thread(target=lambda: done.append(
-            viewer.joints.position('rosbots', 'wheel_left_joint'))).start()
+        threading.Thread(
+            target=lambda: done.append(viewer.joints.position('rosbots', 'wheel_left_joint'))
+        ).start()
         made = events.cell(lambda: world.run(seconds=0.5))
         assert made == 500
         wait_until(lambda: done and motions, 'command and motion')

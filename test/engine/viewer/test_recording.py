@@ -29,8 +29,9 @@ def fallen(path=None):
 def test_recording_is_a_page_with_the_motion_and_does_not_change_it(tmp_path, monkeypatch):
     motions = []
     move = SceneTake.move
-    monkeypatch.setattr(SceneTake, 'move', lambda take, motion: (
-        motions.append(motion), move(take, motion)))
+    monkeypatch.setattr(
+        SceneTake, 'move', lambda take, motion: (motions.append(motion), move(take, motion))
+    )
     path = tmp_path / 'drop.html'
     pose, recording = fallen(path)
     assert pose == fallen()[0]
@@ -81,5 +82,5 @@ def test_missing_viser_is_named(monkeypatch):
     monkeypatch.setattr('importlib.util.find_spec', lambda _name: None)
     with World.empty() as world:
         for act in (world.show, world.recording):
-            with pytest.raises(SimError, match=r"needs the Python package viser; pip install"):
+            with pytest.raises(SimError, match=r'needs the Python package viser; pip install'):
                 act()

@@ -132,8 +132,11 @@ def test_motors_and_efforts_of_joints_act_until_they_are_released(world):
 def test_controllers_take_commands(world):
     arm = world.spawn(ARM)
     manager = arm.plugin('control').manager
-    manager.load('arm', 'effort_controllers/JointTrajectoryController', {
-        'joints': ['shoulder'], 'gains': {'shoulder': {'p': 200.0, 'd': 20.0}}})
+    manager.load(
+        'arm',
+        'effort_controllers/JointTrajectoryController',
+        {'joints': ['shoulder'], 'gains': {'shoulder': {'p': 200.0, 'd': 20.0}}},
+    )
     manager.switch(start=['arm'])
     with viewing(world) as viewer:
         (topic,) = viewer.joints.command_topics()
@@ -149,7 +152,10 @@ def test_sensors_are_read_while_they_are_open_only(world):
     with viewing(world) as viewer:
         sensors = viewer.sensors
         assert sensors.offered() == {
-            'arm/upper/lidar': 'ray', 'arm/upper/imu': 'imu', 'arm/upper/eye': 'camera'}
+            'arm/upper/lidar': 'ray',
+            'arm/upper/imu': 'imu',
+            'arm/upper/eye': 'camera',
+        }
         found = {}
         for name, kind in sensors.offered().items():
             sensors.open(name, kind)
@@ -162,8 +168,10 @@ def test_sensors_are_read_while_they_are_open_only(world):
             return len(found) == 3
 
         wait_until(all_read, 'readings')
-        assert found['arm/upper/lidar'].words.endswith(' of 8 rays meet something') or \
-            'the nearest' in found['arm/upper/lidar'].words
+        assert (
+            found['arm/upper/lidar'].words.endswith(' of 8 rays meet something')
+            or 'the nearest' in found['arm/upper/lidar'].words
+        )
         assert found['arm/upper/imu'].rows[2][0] == 'linear acceleration [m/s^2]'
         assert found['arm/upper/eye'].picture.shape == (16, 32, 3)
         link, pose = sensors.locate('arm/upper/lidar', {'arm/upper': 0})
@@ -213,8 +221,16 @@ def test_shapes_lights_and_files_are_inserted_on_the_ground(world):
         assert set(world.lights) == {'sun'}
 
 
-@pytest.mark.parametrize('content', ['/etc/passwd', ' package://rosbots_description/urdf/x.xacro',
-                                     'model://ground_plane', '../x.xacro', ''])
+@pytest.mark.parametrize(
+    'content',
+    [
+        '/etc/passwd',
+        ' package://rosbots_description/urdf/x.xacro',
+        'model://ground_plane',
+        '../x.xacro',
+        '',
+    ],
+)
 def test_a_text_that_is_a_path_is_never_opened(world, content):
     with viewing(world, paused=True) as viewer, pytest.raises(SimError, match='begins with <'):
         viewer.hands.insert(ModelText('', content))
@@ -252,8 +268,9 @@ def test_the_speed_is_set_for_all_browsers(world):
     with viewing(world) as viewer:
         pages = Pages(viewer)
         viewer.time.set_speed(10.0)
-        wait_until(lambda: pages.changes and pages.changes[-1].max_update_rate == 10000.0,
-                   'the speed')
+        wait_until(
+            lambda: pages.changes and pages.changes[-1].max_update_rate == 10000.0, 'the speed'
+        )
 
 
 def test_a_command_that_nobody_carries_out_never_begins(world):
@@ -271,8 +288,10 @@ def test_a_page_that_waits_does_not_hold_up_the_world(world):
     world.spawn(CRATE, z=0.25)
     with viewing(world) as viewer:
         states = []
-        viewer.view.open(lambda _change: states.append(viewer.inspection.state('crate', None)),
-                         lambda _motion: None)
+        viewer.view.open(
+            lambda _change: states.append(viewer.inspection.state('crate', None)),
+            lambda _motion: None,
+        )
         wait_until(lambda: states, 'the state')
 
 

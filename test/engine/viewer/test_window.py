@@ -80,8 +80,13 @@ def test_time_is_paced_while_somebody_looks(env, monkeypatch):
     env.reset(seed=0)
     Viewer().look(env._window.view)
     now = [0.0]
-    monkeypatch.setattr(window, 'time', SimpleNamespace(
-        monotonic=lambda: now[0], sleep=lambda seconds: now.append(now.pop() + seconds)))
+    monkeypatch.setattr(
+        window,
+        'time',
+        SimpleNamespace(
+            monotonic=lambda: now[0], sleep=lambda seconds: now.append(now.pop() + seconds)
+        ),
+    )
     for _ in range(5):
         env.step(DRIVE)
     assert now[0] == pytest.approx(0.5, abs=0.04)  # the first frame comes at once
@@ -99,7 +104,8 @@ def test_pause_and_steps_hold_the_environment_and_do_not_change_it(env):
     controls.pause()
     found = []
     thread = threading.Thread(
-        target=lambda: found.extend(env.step(DRIVE)[0]['odometry'].tobytes() for _ in range(2)))
+        target=lambda: found.extend(env.step(DRIVE)[0]['odometry'].tobytes() for _ in range(2))
+    )
     thread.start()
     controls.step(30)
     wait_until(lambda: viewer.motions and viewer.motions[-1].time >= 0.23, 'the steps')
@@ -129,5 +135,5 @@ def test_port_in_use_and_missing_viser_are_named(env, monkeypatch):
     with pytest.raises(SimError, match=f'port {port}'):
         Drive(render_mode='web', web_port=port, settle=0.1)
     monkeypatch.setattr('importlib.util.find_spec', lambda _name: None)
-    with pytest.raises(SimError, match="needs the Python package viser; pip install"):
+    with pytest.raises(SimError, match='needs the Python package viser; pip install'):
         Drive(render_mode='web', settle=0.1)

@@ -24,19 +24,61 @@ def costs():
     tracemalloc.stop()
 
 
-@pytest.mark.parametrize('text', [
-    '9 ** 9 ** 9 > 1', '9 ** 999999999 > 1', '3999999 ** 3999999 > 1', '0.1 ** -9999 > 1',
-    '(1 << 99999999) > 1', "'a' * 999999999 == 'b'", "'%999999999d' % 1 == 1", "'%s' % x == 1",
-    "'a'.ljust(999999999) == 1", "'a'.zfill(999999999) == 1", "'a'.join('bc') == 1",
-    "f'{1:999999999d}' == 1", "f'{abs}' == 1", '().__class__', 'abs.__self__', 'x.__class__',
-    "'{0.__class__}'.format(x)", '__import__("os").system("id")', 'open("/etc/passwd")',
-    'exec("1")', 'eval("1")', 'globals()', 'print(1)',
-    '[one for one in range(9)]', '[1] * 999999999',
-    '(1,) * 999999999', '{1: 2}[1]', 'lambda: 1', 'min(*[1, 2])', 'min(x=1)', 'abs(abs)',
-    'x := 1', 'x; x', 'import os', 'sqrt(-1)', 'max("a" * 90000) * 90000 * 90000 == 1', '1 @ 2',
-    '-' * 900 + '1', '(' * 400 + '1' + ')' * 400, '1' * 5000, 'True and ' * 200 + 'True',
-    'a\0b', 'x.real', "'abc'[0]", '`id`', '$(id)', '~x', 'x if x', 'yield x', 'await x',
-])
+@pytest.mark.parametrize(
+    'text',
+    [
+        '9 ** 9 ** 9 > 1',
+        '9 ** 999999999 > 1',
+        '3999999 ** 3999999 > 1',
+        '0.1 ** -9999 > 1',
+        '(1 << 99999999) > 1',
+        "'a' * 999999999 == 'b'",
+        "'%999999999d' % 1 == 1",
+        "'%s' % x == 1",
+        "'a'.ljust(999999999) == 1",
+        "'a'.zfill(999999999) == 1",
+        "'a'.join('bc') == 1",
+        "f'{1:999999999d}' == 1",
+        "f'{abs}' == 1",
+        '().__class__',
+        'abs.__self__',
+        'x.__class__',
+        "'{0.__class__}'.format(x)",
+        '__import__("os").system("id")',
+        'open("/etc/passwd")',
+        'exec("1")',
+        'eval("1")',
+        'globals()',
+        'print(1)',
+        '[one for one in range(9)]',
+        '[1] * 999999999',
+        '(1,) * 999999999',
+        '{1: 2}[1]',
+        'lambda: 1',
+        'min(*[1, 2])',
+        'min(x=1)',
+        'abs(abs)',
+        'x := 1',
+        'x; x',
+        'import os',
+        'sqrt(-1)',
+        'max("a" * 90000) * 90000 * 90000 == 1',
+        '1 @ 2',
+        '-' * 900 + '1',
+        '(' * 400 + '1' + ')' * 400,
+        '1' * 5000,
+        'True and ' * 200 + 'True',
+        'a\0b',
+        'x.real',
+        "'abc'[0]",
+        '`id`',
+        '$(id)',
+        '~x',
+        'x if x',
+        'yield x',
+        'await x',
+    ],
+)
 def test_hostile_condition_is_refused(text):
     with pytest.raises(ValueError, match='condition'):
         Condition(text, ['x']).fault({'x': 1.0})
@@ -44,52 +86,56 @@ def test_hostile_condition_is_refused(text):
 
 NINE = ', '.join(9 * ['*{}'])
 BOMB = 'a0: &a0 [x, x, x]\n' + ''.join(
-    f'a{n}: &a{n} [{NINE.format(*9 * [f"a{n - 1}"])}]\n' for n in range(1, 25))
+    f'a{n}: &a{n} [{NINE.format(*9 * [f"a{n - 1}"])}]\n' for n in range(1, 25)
+)
 DURATION = 'duration: 1.0\n'
 
 
-@pytest.mark.parametrize('text', [
-    BOMB,
-    DURATION + 'models: &a [*a]',
-    DURATION + 'record: &a {x: *a}',
-    DURATION + 'models: ' + '[' * 5000 + ']' * 5000,
-    DURATION + 'record: ' + '{a: ' * 5000 + '1' + '}' * 5000,
-    DURATION + 'models: ' + '[' * 60 + ']' * 60,
-    DURATION + 'seed: ' + '9' * 5000,
-    DURATION + 'parameters: {x: ' + '9' * 400 + '}',
-    DURATION + '? [a]\n: 1',
-    DURATION + '1: 2',
-    'duration: 2001-01-01',
-    'duration: 1.0e+300',
-    'duration: 1.0e+9\nperiod: 0.01',
-    'duration: 1.0e+12\nperiod: 1.0e-300',
-    'duration: .inf',
-    'duration: .nan',
-    'duration: -1.0',
-    'duration: !!python/object/apply:os.system [id]',
-    '!!python/object/new:os.system [id]',
-    'duration: !!python/name:os.system',
-    'duration: !!binary aWQ=',
-    'duration: [1.0',
-    'duration: 1.0\n\tworld: x',
-    'duration: \0',
-    DURATION + 'parameters: {x: {uniform: [-1.0e+308, 1.0e+308]}}',
-    DURATION + 'parameters: {x: {uniform: [1, 2, 3, 4, 5]}}',
-    DURATION + 'parameters: {x: {bytes: [999999999]}}',
-    DURATION + 'parameters: {x: {integers: [0, 1.0e+30]}}',
-    DURATION + 'parameters: {x: {grid: []}}',
-    DURATION + 'parameters: {__class__.x: 1}',
-    DURATION + 'parameters: {x: {grid: [[1, 2]]}}',
-    DURATION + 'repeat: 99999999999',
-    DURATION + 'repeat: -1',
-    DURATION + 'seed: true',
-    DURATION + 'conditions: ["().__class__.__bases__"]\nconditions2: 1',
-    DURATION + 'conditions: ["__import__"]',
-    DURATION + 'world: $x',
-    DURATION + 'world: ${x.__class__}',
-    DURATION + 'models: [{name: a, file: b, text: c}]',
-    DURATION + 'commands: [{at: 1.0e+300, topic: /t}]',
-])
+@pytest.mark.parametrize(
+    'text',
+    [
+        BOMB,
+        DURATION + 'models: &a [*a]',
+        DURATION + 'record: &a {x: *a}',
+        DURATION + 'models: ' + '[' * 5000 + ']' * 5000,
+        DURATION + 'record: ' + '{a: ' * 5000 + '1' + '}' * 5000,
+        DURATION + 'models: ' + '[' * 60 + ']' * 60,
+        DURATION + 'seed: ' + '9' * 5000,
+        DURATION + 'parameters: {x: ' + '9' * 400 + '}',
+        DURATION + '? [a]\n: 1',
+        DURATION + '1: 2',
+        'duration: 2001-01-01',
+        'duration: 1.0e+300',
+        'duration: 1.0e+9\nperiod: 0.01',
+        'duration: 1.0e+12\nperiod: 1.0e-300',
+        'duration: .inf',
+        'duration: .nan',
+        'duration: -1.0',
+        'duration: !!python/object/apply:os.system [id]',
+        '!!python/object/new:os.system [id]',
+        'duration: !!python/name:os.system',
+        'duration: !!binary aWQ=',
+        'duration: [1.0',
+        'duration: 1.0\n\tworld: x',
+        'duration: \0',
+        DURATION + 'parameters: {x: {uniform: [-1.0e+308, 1.0e+308]}}',
+        DURATION + 'parameters: {x: {uniform: [1, 2, 3, 4, 5]}}',
+        DURATION + 'parameters: {x: {bytes: [999999999]}}',
+        DURATION + 'parameters: {x: {integers: [0, 1.0e+30]}}',
+        DURATION + 'parameters: {x: {grid: []}}',
+        DURATION + 'parameters: {__class__.x: 1}',
+        DURATION + 'parameters: {x: {grid: [[1, 2]]}}',
+        DURATION + 'repeat: 99999999999',
+        DURATION + 'repeat: -1',
+        DURATION + 'seed: true',
+        DURATION + 'conditions: ["().__class__.__bases__"]\nconditions2: 1',
+        DURATION + 'conditions: ["__import__"]',
+        DURATION + 'world: $x',
+        DURATION + 'world: ${x.__class__}',
+        DURATION + 'models: [{name: a, file: b, text: c}]',
+        DURATION + 'commands: [{at: 1.0e+300, topic: /t}]',
+    ],
+)
 def test_hostile_scenario_is_refused_in_a_sentence(tmp_path, text):
     path = tmp_path / 'hostile.yaml'
     path.write_text(text)
@@ -99,11 +145,18 @@ def test_hostile_scenario_is_refused_in_a_sentence(tmp_path, text):
     assert len(str(caught.value)) < 2000
 
 
-@pytest.mark.parametrize('make', [
-    os.mkfifo, os.mkdir, lambda path: path.symlink_to('/dev/zero'),
-    lambda path: path.symlink_to(path.name), lambda path: path.write_bytes(b'\xff\xfe\0' * 99),
-    lambda path: os.truncate(path.write_text('') or path, 1 << 40), lambda path: None,
-])
+@pytest.mark.parametrize(
+    'make',
+    [
+        os.mkfifo,
+        os.mkdir,
+        lambda path: path.symlink_to('/dev/zero'),
+        lambda path: path.symlink_to(path.name),
+        lambda path: path.write_bytes(b'\xff\xfe\0' * 99),
+        lambda path: os.truncate(path.write_text('') or path, 1 << 40),
+        lambda path: None,
+    ],
+)
 def test_what_is_no_file_of_text_is_refused(tmp_path, make):
     path = tmp_path / 'hostile.yaml'
     make(path)
@@ -153,10 +206,16 @@ def planted_folder_in_use(folder, _target):
     return held
 
 
-@pytest.mark.parametrize('plant', [
-    planted_link_to_a_folder, planted_link_to_a_file, planted_foreign_folder,
-    planted_folder_in_use, lambda folder, _target: (folder / 'rbx').touch(),
-])
+@pytest.mark.parametrize(
+    'plant',
+    [
+        planted_link_to_a_folder,
+        planted_link_to_a_file,
+        planted_foreign_folder,
+        planted_folder_in_use,
+        lambda folder, _target: (folder / 'rbx').touch(),
+    ],
+)
 def test_what_another_program_planted_is_left_alone(ray_place, tmp_path_factory, plant):
     if plant is planted_foreign_folder and os.getuid():
         pytest.skip('only root gives files to other users')

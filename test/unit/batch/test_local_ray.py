@@ -37,6 +37,8 @@ def test_folders_of_killed_programs_are_removed_with_their_processes_and_no_othe
 
 def test_a_folder_that_cannot_be_made_is_named(place):
     place.rmdir()
-    with pytest.raises(ClusterError, match=f'Ray needs a folder for its files: .*{place}'), \
-            local_ray.own_folder():
+    with (
+        pytest.raises(ClusterError, match=f'Ray needs a folder for its files: .*{place}'),
+        local_ray.own_folder(),
+    ):
         pass

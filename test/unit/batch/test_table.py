@@ -18,13 +18,16 @@ from rosbots_description.batch.table import Table
 
 @pytest.fixture
 def file():
-    return ScenarioFile(pushed_ball(parameters={
-        'force': {'grid': [float(number) for number in range(50)]}}))
+    return ScenarioFile(
+        pushed_ball(parameters={'force': {'grid': [float(number) for number in range(50)]}})
+    )
 
 
 def rows(file, *numbers):
-    return [{**empty_row(file, file.parameters.run(number)), 'outcome': 'passed', 'x_end': 1.5}
-            for number in numbers]
+    return [
+        {**empty_row(file, file.parameters.run(number)), 'outcome': 'passed', 'x_end': 1.5}
+        for number in numbers
+    ]
 
 
 def test_flushed_rows_can_be_read_at_any_time(file, tmp_path):
@@ -133,8 +136,9 @@ table = Table(ScenarioFile(pushed_ball()), sys.argv[1])
 print('open', flush=True)
 time.sleep(600.0)
 """
-    with subprocess.Popen([sys.executable, '-c', code, tmp_path, *sys.path],
-                          stdout=subprocess.PIPE) as other:
+    with subprocess.Popen(
+        [sys.executable, '-c', code, tmp_path, *sys.path], stdout=subprocess.PIPE
+    ) as other:
         assert other.stdout.readline() == b'open\n'
         with pytest.raises(ScenarioError, match='is in use by another batch'):
             Table(file, tmp_path)

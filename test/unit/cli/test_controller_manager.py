@@ -5,14 +5,16 @@ import pytest
 from rosbots_description.cli import controller_manager
 
 
-@pytest.mark.parametrize(('program', 'arguments', 'name'), [
-    (controller_manager.spawner, ['arm'], 'spawner'),
-    (controller_manager.unspawner, ['arm'], 'unspawner'),
-    (controller_manager.manager, ['list'], 'controller_manager'),
-    (controller_manager.group, ['list'], 'controller_group'),
-])
-def test_wrong_address_of_the_master_is_one_sentence(
-        monkeypatch, capsys, program, arguments, name):
+@pytest.mark.parametrize(
+    ('program', 'arguments', 'name'),
+    [
+        (controller_manager.spawner, ['arm'], 'spawner'),
+        (controller_manager.unspawner, ['arm'], 'unspawner'),
+        (controller_manager.manager, ['list'], 'controller_manager'),
+        (controller_manager.group, ['list'], 'controller_group'),
+    ],
+)
+def test_wrong_address_of_the_master_is_one_sentence(monkeypatch, capsys, program, arguments, name):
     monkeypatch.setenv('ROS_MASTER_URI', 'foo')
     assert program(arguments) == 1
     (line,) = capsys.readouterr().err.splitlines()

@@ -8,8 +8,10 @@ from rosbots_description.ros_api.clients.planar_sample import PlanarSample
 
 
 def test_each_segment_is_drawn_in_its_own_colour(tmp_path):
-    drive = [(segment, [PlanarSample(0.0, 0.0, i, i, 0.0), PlanarSample(3.0, 3.0, i + 1.0, i, 0.0)])
-             for i, segment in enumerate(DRIVE)]
+    drive = [
+        (segment, [PlanarSample(0.0, 0.0, i, i, 0.0), PlanarSample(3.0, 3.0, i + 1.0, i, 0.0)])
+        for i, segment in enumerate(DRIVE)
+    ]
     path = tmp_path / 'path.png'
 
     plot_path(path, drive, [sample for _, samples in drive for sample in samples])

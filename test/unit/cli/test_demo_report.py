@@ -26,11 +26,15 @@ def circle(speed, turn_rate, duration=3.0, step=0.05, heading=3.0):
         t = i * step
         yaw = heading + turn_rate * t
         radius = speed / turn_rate
-        samples.append(PlanarSample(
-            100.0 + t, 7.0 + t / 2,
-            radius * (math.sin(yaw) - math.sin(heading)),
-            radius * (math.cos(heading) - math.cos(yaw)),
-            math.remainder(yaw, math.tau)))
+        samples.append(
+            PlanarSample(
+                100.0 + t,
+                7.0 + t / 2,
+                radius * (math.sin(yaw) - math.sin(heading)),
+                radius * (math.cos(heading) - math.cos(yaw)),
+                math.remainder(yaw, math.tau),
+            )
+        )
     return samples
 
 
@@ -68,21 +72,29 @@ def test_expected_motion_comes_from_the_true_geometry():
     assert expected.turn_rate == pytest.approx(-1.1058, abs=1e-4)
 
 
-@pytest.mark.parametrize(('name', 'speed', 'turn_rate'), [
-    ('straight', 0.4373, -0.0053),
-    ('arc', 0.4177, 0.5313),
-    ('turn', -0.0311, 1.0711),
-    ('stop', 0.0, 0.0),
-])
+@pytest.mark.parametrize(
+    ('name', 'speed', 'turn_rate'),
+    [
+        ('straight', 0.4373, -0.0053),
+        ('arc', 0.4177, 0.5313),
+        ('turn', -0.0311, 1.0711),
+        ('stop', 0.0, 0.0),
+    ],
+)
 def test_motion_measured_in_gazebo_gives_no_warning(name, speed, turn_rate):
     segment = next(segment for segment in DRIVE if segment.name == name)
     motion = MeanMotion(speed, turn_rate)
     assert complaint(Row(segment, motion, motion, 1.0)) is None
 
 
-@pytest.mark.parametrize('truth', [
-    MeanMotion(0.0, 0.0), MeanMotion(-0.44, 0.55), MeanMotion(0.44, -0.55),
-])
+@pytest.mark.parametrize(
+    'truth',
+    [
+        MeanMotion(0.0, 0.0),
+        MeanMotion(-0.44, 0.55),
+        MeanMotion(0.44, -0.55),
+    ],
+)
 def test_standing_still_and_wrong_signs_are_reported(truth):
     segment = Segment('arc', 0.5, 0.5, 4.0)
     assert 'part "arc"' in complaint(Row(segment, truth, truth, 1.0))
@@ -93,5 +105,15 @@ def test_table_has_a_line_for_each_segment_with_its_numbers_in_order():
     lines = table(rows).splitlines()
     assert len(lines) == 3
     assert lines[2].split() == [
-        'straight', '3.0', 's', '0.50', '0.00', '0.440', '0.000', '0.431', '0.012', '0.999']
+        'straight',
+        '3.0',
+        's',
+        '0.50',
+        '0.00',
+        '0.440',
+        '0.000',
+        '0.431',
+        '0.012',
+        '0.999',
+    ]
     assert len({len(line) for line in lines}) == 1

@@ -21,24 +21,29 @@ def abrupt(was_signalled):
 sys.exit(guarded(work, abrupt))
 """
 WAIT = 'signal.pause()'
-TRAPPED = ('signal.signal(signal.SIGTERM, lambda *_: os._exit(1)); print("ready", flush=True); '
-           + WAIT)
+TRAPPED = (
+    'signal.signal(signal.SIGTERM, lambda *_: os._exit(1)); print("ready", flush=True); ' + WAIT
+)
 
 
 def start(work):
     """Start the program; return it when `work` has begun."""
-    program = subprocess.Popen([sys.executable, '-c', PROGRAM.format(work=work)],
-                               stdout=subprocess.PIPE, text=True)
+    program = subprocess.Popen(
+        [sys.executable, '-c', PROGRAM.format(work=work)], stdout=subprocess.PIPE, text=True
+    )
     assert program.stdout.readline() == 'begun\n'
     return program
 
 
-@pytest.mark.parametrize(('work', 'code', 'printed'), [
-    ('return 0', 0, ''),
-    ('return 130', 130, ''),
-    ('os._exit(0)', 7, 'abrupt\n'),
-    ('os.kill(os.getpid(), signal.SIGKILL)', 7, 'abrupt\n'),
-])
+@pytest.mark.parametrize(
+    ('work', 'code', 'printed'),
+    [
+        ('return 0', 0, ''),
+        ('return 130', 130, ''),
+        ('os._exit(0)', 7, 'abrupt\n'),
+        ('os.kill(os.getpid(), signal.SIGKILL)', 7, 'abrupt\n'),
+    ],
+)
 def test_the_exit_code_is_that_of_the_work_or_of_its_abrupt_end(work, code, printed):
     program = start(work)
     assert (program.communicate()[0], program.returncode) == (printed, code)

@@ -25,8 +25,10 @@ WINDOW = """#!/bin/sh
 echo $$ "$@" > {folder}/arguments
 exec sleep 60
 """
-MAIN = ('import sys; from rosbots_description.cli import gzclient; '
-        'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))')
+MAIN = (
+    'import sys; from rosbots_description.cli import gzclient; '
+    'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))'
+)
 
 
 # Crashes {times} times like Debian's RViz, then runs until it is ended.
@@ -44,8 +46,14 @@ def open_window(folder, text):
     program.chmod(0o755)
     return subprocess.Popen(
         [sys.executable, '-c', MAIN, '--verbose', '__name:=gazebo_gui'],
-        env={**os.environ, 'PATH': f'{folder}:{os.environ["PATH"]}',
-             'ROS_MASTER_URI': 'http://127.0.0.1:1'}, stderr=subprocess.PIPE, text=True)
+        env={
+            **os.environ,
+            'PATH': f'{folder}:{os.environ["PATH"]}',
+            'ROS_MASTER_URI': 'http://127.0.0.1:1',
+        },
+        stderr=subprocess.PIPE,
+        text=True,
+    )
 
 
 def count_starts(folder):
@@ -76,8 +84,9 @@ def window(tmp_path):
 
 def test_window_has_its_own_tf_topics_and_ends_on_request(window):
     process, words = window
-    assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} \
-        <= set(words)
+    assert {'/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames', '__name:=gazebo_gui'} <= set(
+        words
+    )
     process.send_signal(signal.SIGTERM)
     assert process.wait(PATIENCE) == 0
 
@@ -97,8 +106,10 @@ def test_rviz_that_crashes_at_its_start_is_restarted(tmp_path, number, times):
     process.send_signal(signal.SIGTERM)
     _, output = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
-    assert output.splitlines() == [
-        f'gzclient: RViz crashed as it opened (SIG{number}); restarting it'] * times
+    assert (
+        output.splitlines()
+        == [f'gzclient: RViz crashed as it opened (SIG{number}); restarting it'] * times
+    )
 
 
 def test_restarts_of_a_crashing_rviz_are_limited(tmp_path):
@@ -106,7 +117,8 @@ def test_restarts_of_a_crashing_rviz_are_limited(tmp_path):
     _, output = process.communicate(timeout=PATIENCE)
     assert (process.returncode, count_starts(tmp_path)) == (128 + signal.SIGSEGV, STARTS)
     assert output.splitlines()[-1] == (
-        f'gzclient: RViz crashed as it opened (SIGSEGV); no window after {STARTS} starts')
+        f'gzclient: RViz crashed as it opened (SIGSEGV); no window after {STARTS} starts'
+    )
 
 
 def test_rviz_that_the_user_closes_is_not_restarted(tmp_path):
@@ -149,8 +161,9 @@ def folder_of_another_user(path, _tmp_path):
     os.chown(path, 65534, 65534)
 
 
-@pytest.mark.parametrize('plant', [
-    link_to_a_folder, folder_of_another_user, lambda path, _: path.touch()])
+@pytest.mark.parametrize(
+    'plant', [link_to_a_folder, folder_of_another_user, lambda path, _: path.touch()]
+)
 def test_planted_runtime_folder_is_not_used(tmp_path, monkeypatch, plant):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     plant(tmp_path / f'rosbots-runtime-{os.getuid()}', tmp_path)
@@ -164,17 +177,24 @@ def test_runtime_folder_is_made_private(tmp_path, monkeypatch):
     assert made.stat().st_mode & 0o777 == 0o700
 
 
-@pytest.mark.parametrize(('variable', 'library', 'opened', 'works'), [
-    (':0', 'libX11.so.6', 0x7F0000001234, True), (':0', 'libX11.so.6', None, False),
-    (':0', None, 1, False), ('', 'libX11.so.6', 1, False)])
+@pytest.mark.parametrize(
+    ('variable', 'library', 'opened', 'works'),
+    [
+        (':0', 'libX11.so.6', 0x7F0000001234, True),
+        (':0', 'libX11.so.6', None, False),
+        (':0', None, 1, False),
+        ('', 'libX11.so.6', 1, False),
+    ],
+)
 def test_display_works_if_x11_opens_it(monkeypatch, variable, library, opened, works):
     closed = []
 
     def open_display(_name):
         return opened
 
-    x11 = SimpleNamespace(XOpenDisplay=open_display,
-                          XCloseDisplay=lambda display: closed.append(display.value))
+    x11 = SimpleNamespace(
+        XOpenDisplay=open_display, XCloseDisplay=lambda display: closed.append(display.value)
+    )
     monkeypatch.setenv('DISPLAY', variable)
     monkeypatch.setattr(ctypes.util, 'find_library', lambda name: library)
     monkeypatch.setattr(ctypes, 'CDLL', {library: x11}.__getitem__)

@@ -31,10 +31,19 @@ def test_plugins_and_lockstep_are_accepted():
     assert (given.iters, messages) == (100, ())
 
 
-@pytest.mark.parametrize('option', [
-    '-p state.log', '--play state.log', '-o fast', '--profile fast', '--record_path /tmp/log',
-    '--record_period 0.1', '--record_encoding zlib', '--record_filter robot',
-])
+@pytest.mark.parametrize(
+    'option',
+    [
+        '-p state.log',
+        '--play state.log',
+        '-o fast',
+        '--profile fast',
+        '--record_path /tmp/log',
+        '--record_period 0.1',
+        '--record_encoding zlib',
+        '--record_filter robot',
+    ],
+)
 def test_value_of_an_option_is_not_taken_as_the_world(option):
     given, ((level, text),) = _read(f'{option} my.world')
     assert given.world == 'my.world'
@@ -57,7 +66,6 @@ def test_seed_is_used_without_a_message():
     assert parser().parse_args([]).seed == 0
 
 
-
 def test_another_engine_gives_an_info_message():
     _, ((level, text),) = _read('-e bullet')
     assert level == logging.INFO
@@ -74,14 +82,19 @@ def test_recording_and_unknown_options_are_warnings():
 
 def test_remappings_are_not_options():
     assert split_remappings(['-u', '__name:=gazebo', 'a.world', 'a:=b']) == (
-        ['-u', 'a.world'], ['__name:=gazebo', 'a:=b'])
+        ['-u', 'a.world'],
+        ['__name:=gazebo', 'a:=b'],
+    )
 
 
-@pytest.mark.parametrize(('name', 'said'), [
-    ('worlds/mud.world', "'worlds/mud.world'"),
-    ('x' * 300, 'xxx'),  # longer than any name of a file
-    ('a\x1b]0;b\0', 'there is no world file'),
-])
+@pytest.mark.parametrize(
+    ('name', 'said'),
+    [
+        ('worlds/mud.world', "'worlds/mud.world'"),
+        ('x' * 300, 'xxx'),  # longer than any name of a file
+        ('a\x1b]0;b\0', 'there is no world file'),
+    ],
+)
 def test_missing_world_is_one_error_line(capsys, name, said):
     assert main([name]) == 1
     (line,) = capsys.readouterr().err.splitlines()
@@ -89,8 +102,11 @@ def test_missing_world_is_one_error_line(capsys, name, said):
     assert line.isprintable()
 
 
-REQUIRED = [line.split(' ')[0] for line in REQUIREMENTS.read_text().splitlines()
-            if line.startswith(('pybullet', 'pycollada'))]
+REQUIRED = [
+    line.split(' ')[0]
+    for line in REQUIREMENTS.read_text().splitlines()
+    if line.startswith(('pybullet', 'pycollada'))
+]
 
 
 @pytest.mark.parametrize('requirement', REQUIRED)
@@ -103,7 +119,11 @@ def test_missing_module_is_one_error_line(requirement):
     ended = subprocess.run(
         [sys.executable, '-c', program],
         env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        capture_output=True, text=True, timeout=60, check=False)
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     assert ended.returncode == 1
     (line,) = ended.stderr.splitlines()
     assert line.endswith(f'pip install {requirement}')

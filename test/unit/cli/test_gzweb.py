@@ -12,8 +12,11 @@ from rosbots_description.cli import gzweb, page_token
 
 def test_without_viser_it_says_how_to_get_it(monkeypatch, capsys):
     find = importlib.util.find_spec
-    monkeypatch.setattr(importlib.util, 'find_spec',
-                        lambda name, *more: None if name == 'viser' else find(name, *more))
+    monkeypatch.setattr(
+        importlib.util,
+        'find_spec',
+        lambda name, *more: None if name == 'viser' else find(name, *more),
+    )
     assert gzweb.main([]) == 1
     said = capsys.readouterr().err
     assert said.startswith('gzweb: no window: the Python package viser is not installed')
@@ -21,19 +24,28 @@ def test_without_viser_it_says_how_to_get_it(monkeypatch, capsys):
     assert needed in (ROOT / 'requirements' / 'web.pip').read_text(encoding='utf-8').split()
 
 
-@pytest.mark.parametrize('arguments', [
-    ['--port', '99999'], ['--host', 'no such host'], ['--port', '-1'],
-])
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        ['--port', '99999'],
+        ['--host', 'no such host'],
+        ['--port', '-1'],
+    ],
+)
 def test_an_address_that_cannot_be_served_is_told_in_a_sentence(arguments, capsys):
     assert gzweb.main(arguments) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith('gzweb: no window at ')
 
 
-@pytest.mark.parametrize(('arguments', 'token'), [
-    (['--token-file', '/nowhere/token'], ''), ([], 'short'),
-    (['--viewing-token-file', '/nowhere/token'], ''),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'token'),
+    [
+        (['--token-file', '/nowhere/token'], ''),
+        ([], 'short'),
+        (['--viewing-token-file', '/nowhere/token'], ''),
+    ],
+)
 def test_a_token_that_cannot_be_used_is_told_in_a_sentence(arguments, token, monkeypatch, capsys):
     monkeypatch.setenv(page_token.VARIABLE, token)
     assert gzweb.main([*arguments, '--port', '0']) == 1
@@ -53,8 +65,9 @@ def test_a_token_of_a_file_that_others_can_read_is_refused(tmp_path, capsys):
     path.write_text('a-token_of_16-chars', encoding='utf-8')
     path.chmod(0o644)
     assert gzweb.main(['--viewing-token-file', str(path), '--port', '0']) == 1
-    assert capsys.readouterr().err == (f"gzweb: no token in '{path}': others can read it; make it "
-                                       'your own, and chmod 600\n')
+    assert capsys.readouterr().err == (
+        f"gzweb: no token in '{path}': others can read it; make it your own, and chmod 600\n"
+    )
     path.chmod(0o600)
     assert page_token.given_token(str(path)) == 'a-token_of_16-chars'
 
@@ -67,7 +80,8 @@ def test_a_number_of_viewers_that_cannot_be_is_refused(number, capsys):
 
 
 def test_both_addresses_are_printed_and_tokens_only_where_nobody_else_reads(
-        tmp_path, capsys, monkeypatch):
+    tmp_path, capsys, monkeypatch
+):
     address, viewing = 'http://127.0.0.1:1/?token=a', 'http://127.0.0.1:1/?token=b'
     with page_token.announced('gzweb', address, viewing):
         said = capsys.readouterr().err

@@ -49,14 +49,21 @@ print((resident() - before) / (1_000_000 * 50))
 
 
 def gained(program, call):
-    ended = subprocess.run([sys.executable, '-c', BEGIN.format(call=call) + program], check=True,
-                           capture_output=True, text=True)
+    ended = subprocess.run(
+        [sys.executable, '-c', BEGIN.format(call=call) + program],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
     return float(ended.stdout)
 
 
 @pytest.mark.skipif('not __import__("platform").libc_ver()[0] == "glibc"', reason='of glibc')
-@pytest.mark.parametrize(('program', 'least', 'most'), [(THREADS, 6.0, 1.5), (LARGE, 0.9, 0.1)],
-                         ids=['threads', 'large pieces'])
+@pytest.mark.parametrize(
+    ('program', 'least', 'most'),
+    [(THREADS, 6.0, 1.5), (LARGE, 0.9, 0.1)],
+    ids=['threads', 'large pieces'],
+)
 def test_what_was_freed_is_used_again_or_returned(program, least, most):
     assert gained(program, '') > least  # as glibc does it
     assert gained(program, 'use_one_heap()') < most

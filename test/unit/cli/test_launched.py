@@ -9,13 +9,20 @@ import pytest
 from rosbots_description.cli.launched import Launched, descendants
 
 
-@pytest.mark.parametrize(('output', 'sentence'), [
-    ('[INFO] all well\n[ERROR] [1.5, 0.0]: no such mesh\n[INFO] bye\n',
-     '[ERROR] [1.5, 0.0]: no such mesh (see {log})'),
-    ('\x1b]2;title\x07\x1b[31m[gazebo-2] process has died [pid 7, exit code 1, cmd /a/b c].\x1b[0m',
-     '[gazebo-2] process has died [pid 7, exit code 1] (see {log})'),
-    ('done\n', 'see {log}'),
-])
+@pytest.mark.parametrize(
+    ('output', 'sentence'),
+    [
+        (
+            '[INFO] all well\n[ERROR] [1.5, 0.0]: no such mesh\n[INFO] bye\n',
+            '[ERROR] [1.5, 0.0]: no such mesh (see {log})',
+        ),
+        (
+            '\x1b]2;title\x07\x1b[31m[gazebo-2] process has died [pid 7, exit code 1, cmd /a/b c].\x1b[0m',
+            '[gazebo-2] process has died [pid 7, exit code 1] (see {log})',
+        ),
+        ('done\n', 'see {log}'),
+    ],
+)
 def test_reported_error_is_the_last_one_without_colours(tmp_path, output, sentence):
     log = tmp_path / 'launch.log'
     with Launched(['--version'], log, {'PATH': '/usr/bin'}) as launched:
@@ -33,9 +40,15 @@ def test_log_is_its_owners_alone(tmp_path):
 
 def test_descendants_are_found_across_sessions():
     parent = subprocess.Popen(
-        [sys.executable, '-c',
-         'import subprocess; p = subprocess.Popen(["sleep", "60"], start_new_session=True); '
-         'print(p.pid, flush=True); p.wait()'], stdout=subprocess.PIPE, text=True)
+        [
+            sys.executable,
+            '-c',
+            'import subprocess; p = subprocess.Popen(["sleep", "60"], start_new_session=True); '
+            'print(p.pid, flush=True); p.wait()',
+        ],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     try:
         child = int(parent.stdout.readline())
         assert descendants(parent.pid) == [child]

@@ -33,10 +33,20 @@ def run(tmp_path):
     def run_program(redirections='', **variables):
         python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
         done = subprocess.run(
-            ['bash', '-c', f'set -o pipefail; "$@" {redirections}', 'bash', sys.executable, program,
-             seen],
+            [
+                'bash',
+                '-c',
+                f'set -o pipefail; "$@" {redirections}',
+                'bash',
+                sys.executable,
+                program,
+                seen,
+            ],
             env={'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **variables},
-            capture_output=True, timeout=60, check=False)
+            capture_output=True,
+            timeout=60,
+            check=False,
+        )
         return done.returncode, done.stdout, done.stderr, seen.read_text(encoding='utf-8')
 
     return run_program
@@ -46,10 +56,19 @@ UTF8 = "größe ['".encode()
 SEEN = 'utf-8 open'
 
 
-@pytest.mark.parametrize('variables', [
-    {}, {'LANG': 'C'}, {'LC_ALL': 'C'}, {'LC_ALL': 'POSIX'}, {'LC_ALL': 'C.UTF-8'},
-    {'LC_ALL': 'C', 'PYTHONUTF8': '0'}, {'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'},
-], ids=str)
+@pytest.mark.parametrize(
+    'variables',
+    [
+        {},
+        {'LANG': 'C'},
+        {'LC_ALL': 'C'},
+        {'LC_ALL': 'POSIX'},
+        {'LC_ALL': 'C.UTF-8'},
+        {'LC_ALL': 'C', 'PYTHONUTF8': '0'},
+        {'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'},
+    ],
+    ids=str,
+)
 def test_file_names_and_text_are_utf8_in_every_locale(run, variables):
     code, output, errors, seen = run(**variables)
     assert (code, seen) == (7, SEEN)
@@ -66,7 +85,8 @@ def test_output_with_ascii_encoding_gets_escapes(run):
 
 def test_process_is_named_after_the_program(tmp_path):
     program = tmp_path / 'gzserver'
-    program.write_text(textwrap.dedent("""\
+    program.write_text(
+        textwrap.dedent("""\
         import sys
         from pathlib import Path
         from rosbots_description.cli.program import run
@@ -76,10 +96,16 @@ def test_process_is_named_after_the_program(tmp_path):
             return 0
 
         sys.exit(run(main))
-        """), encoding='utf-8')
+        """),
+        encoding='utf-8',
+    )
     done = subprocess.run(
-        [sys.executable, program], env={'PYTHONPATH': str(ROOT / 'src')},
-        capture_output=True, timeout=60, check=False)
+        [sys.executable, program],
+        env={'PYTHONPATH': str(ROOT / 'src')},
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
     assert (done.returncode, done.stdout) == (0, b'gzserver\n')
 
 
@@ -97,15 +123,28 @@ INTERRUPTED = textwrap.dedent("""\
 
 def test_unexpected_ctrl_c_ends_silently():
     done = subprocess.run(
-        [sys.executable, '-c', INTERRUPTED], env={'PYTHONPATH': str(ROOT / 'src')},
-        capture_output=True, timeout=60, check=False)
+        [sys.executable, '-c', INTERRUPTED],
+        env={'PYTHONPATH': str(ROOT / 'src')},
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
     assert (done.returncode, done.stderr) == (130, b'')
 
 
-@pytest.mark.parametrize('redirections', [
-    '>&-', '2>&-', '<&-', '<&- >&-', '<&- >&- 2>&-', '>/dev/full', '>/dev/full 2>&1',
-    '2>&1 | true',
-])
+@pytest.mark.parametrize(
+    'redirections',
+    [
+        '>&-',
+        '2>&-',
+        '<&-',
+        '<&- >&-',
+        '<&- >&- 2>&-',
+        '>/dev/full',
+        '>/dev/full 2>&1',
+        '2>&1 | true',
+    ],
+)
 def test_closed_or_full_streams_do_not_stop_the_program(run, redirections):
     code, _, errors, seen = run(redirections)
     assert (code, seen) == (7, SEEN)

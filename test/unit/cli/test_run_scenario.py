@@ -12,10 +12,13 @@ from rosbots_description.ros_api import transport
 from rosbots_description.ros_api.clients import scenario_run
 
 
-@pytest.mark.parametrize(('changes', 'arguments', 'said'), [
-    ({}, ['--run', '2'], 'run_scenario: there is no run 2; it has 2, from 0\n'),
-    ({'modles': []}, [], 'run_scenario: {}: Object contains unknown field `modles`\n'),
-])
+@pytest.mark.parametrize(
+    ('changes', 'arguments', 'said'),
+    [
+        ({}, ['--run', '2'], 'run_scenario: there is no run 2; it has 2, from 0\n'),
+        ({'modles': []}, [], 'run_scenario: {}: Object contains unknown field `modles`\n'),
+    ],
+)
 def test_what_cannot_be_run_is_said_in_one_sentence(tmp_path, capsys, changes, arguments, said):
     path = tmp_path / 'ball.yaml'
     path.write_text(yaml.safe_dump(pushed_ball(**changes)))
@@ -23,11 +26,14 @@ def test_what_cannot_be_run_is_said_in_one_sentence(tmp_path, capsys, changes, a
     assert capsys.readouterr() == ('', said.format(path))
 
 
-@pytest.mark.parametrize(('outcome', 'code', 'out', 'err'), [
-    ([{'x_end': 1.5}], 0, 'x_end: 1.5\n', ''),
-    (AssertionError('it does not hold'), 1, '', 'run_scenario: it does not hold\n'),
-    (ScenarioError('no topic'), 1, '', 'run_scenario: no topic\n'),
-])
+@pytest.mark.parametrize(
+    ('outcome', 'code', 'out', 'err'),
+    [
+        ([{'x_end': 1.5}], 0, 'x_end: 1.5\n', ''),
+        (AssertionError('it does not hold'), 1, '', 'run_scenario: it does not hold\n'),
+        (ScenarioError('no topic'), 1, '', 'run_scenario: no topic\n'),
+    ],
+)
 def test_a_run_by_hand_prints_its_row_or_one_sentence(
     tmp_path, monkeypatch, capsys, outcome, code, out, err
 ):

@@ -23,26 +23,29 @@ def _velocity_after(keys, speeds=None):
     return driver.velocity()
 
 
-@pytest.mark.parametrize('key, expected', [
-    ('i', Velocity(x=0.5)),
-    ('o', Velocity(x=0.5, yaw=-1.0)),
-    ('u', Velocity(x=0.5, yaw=1.0)),
-    ('j', Velocity(yaw=1.0)),
-    ('l', Velocity(yaw=-1.0)),
-    (',', Velocity(x=-0.5)),
-    ('.', Velocity(x=-0.5, yaw=1.0)),
-    ('m', Velocity(x=-0.5, yaw=-1.0)),
-    ('I', Velocity(x=0.5)),
-    ('O', Velocity(x=0.5, y=-0.5)),
-    ('U', Velocity(x=0.5, y=0.5)),
-    ('J', Velocity(y=0.5)),
-    ('L', Velocity(y=-0.5)),
-    ('<', Velocity(x=-0.5)),
-    ('>', Velocity(x=-0.5, y=-0.5)),
-    ('M', Velocity(x=-0.5, y=0.5)),
-    ('t', Velocity(z=0.5)),
-    ('b', Velocity(z=-0.5)),
-])
+@pytest.mark.parametrize(
+    'key, expected',
+    [
+        ('i', Velocity(x=0.5)),
+        ('o', Velocity(x=0.5, yaw=-1.0)),
+        ('u', Velocity(x=0.5, yaw=1.0)),
+        ('j', Velocity(yaw=1.0)),
+        ('l', Velocity(yaw=-1.0)),
+        (',', Velocity(x=-0.5)),
+        ('.', Velocity(x=-0.5, yaw=1.0)),
+        ('m', Velocity(x=-0.5, yaw=-1.0)),
+        ('I', Velocity(x=0.5)),
+        ('O', Velocity(x=0.5, y=-0.5)),
+        ('U', Velocity(x=0.5, y=0.5)),
+        ('J', Velocity(y=0.5)),
+        ('L', Velocity(y=-0.5)),
+        ('<', Velocity(x=-0.5)),
+        ('>', Velocity(x=-0.5, y=-0.5)),
+        ('M', Velocity(x=-0.5, y=0.5)),
+        ('t', Velocity(z=0.5)),
+        ('b', Velocity(z=-0.5)),
+    ],
+)
 def test_move_key_gives_its_velocity(key, expected):
     assert _velocity_after(key) == expected
 
@@ -56,10 +59,17 @@ def test_any_other_key_stops(key):
     assert _velocity_after(['i', key]) == Velocity()
 
 
-@pytest.mark.parametrize('key, linear, angular', [
-    ('q', 0.55, 1.1), ('z', 0.45, 0.9), ('w', 0.55, 1.0),
-    ('x', 0.45, 1.0), ('e', 0.5, 1.1), ('c', 0.5, 0.9),
-])
+@pytest.mark.parametrize(
+    'key, linear, angular',
+    [
+        ('q', 0.55, 1.1),
+        ('z', 0.45, 0.9),
+        ('w', 0.55, 1.0),
+        ('x', 0.45, 1.0),
+        ('e', 0.5, 1.1),
+        ('c', 0.5, 0.9),
+    ],
+)
 def test_speed_key_scales_and_keeps_the_direction(key, linear, angular):
     velocity = _velocity_after(['u', key])
     assert (velocity.x, velocity.yaw) == pytest.approx((linear, angular))
@@ -77,8 +87,11 @@ def test_speed_key_shows_the_speeds():
 
 def test_speed_keys_stop_at_the_limit_with_a_message():
     driver = Driver(Speeds(linear_limit=0.5, angular_limit=1.05))
-    assert driver.press('q') == ['Linear speed limit reached!', 'Angular speed limit reached!',
-                                 'currently:\tspeed 0.5\tturn 1.05 ']
+    assert driver.press('q') == [
+        'Linear speed limit reached!',
+        'Angular speed limit reached!',
+        'currently:\tspeed 0.5\tturn 1.05 ',
+    ]
     assert driver.press('c')[0] == 'Linear speed limit reached!'
 
 

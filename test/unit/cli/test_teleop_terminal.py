@@ -71,19 +71,34 @@ def test_hangup_of_the_terminal_is_end_of_file(terminal):
 
 def test_missing_terminal_is_an_error():
     program = subprocess.run(
-        [sys.executable, '-c', 'import sys; sys.modules["rospy"] = None\n'
-         'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())'],
-        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=PATIENCE, check=False,
-        env={**os.environ, 'PYTHONPATH': str(SOURCE)})
+        [
+            sys.executable,
+            '-c',
+            'import sys; sys.modules["rospy"] = None\n'
+            'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())',
+        ],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+        env={**os.environ, 'PYTHONPATH': str(SOURCE)},
+    )
     assert program.returncode == 1
     assert 'not a terminal' in program.stderr and 'Traceback' not in program.stderr
 
 
-@pytest.mark.parametrize('wrong', [
-    {'speed': 'fast'}, {'turn': True}, {'speed': float('inf')}, {'key_timeout': -1},
-    {'repeat_rate': float('nan')},
-])
+@pytest.mark.parametrize(
+    'wrong',
+    [
+        {'speed': 'fast'},
+        {'turn': True},
+        {'speed': float('inf')},
+        {'key_timeout': -1},
+        {'repeat_rate': float('nan')},
+    ],
+)
 def test_error_names_the_invalid_parameter(wrong):
-    (name, value), = wrong.items()
+    ((name, value),) = wrong.items()
     with pytest.raises(ValueError, match=f'~{name} must be .*{value!r}'):
         Settings(**wrong)

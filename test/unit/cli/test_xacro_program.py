@@ -16,31 +16,43 @@ YAML = 'wheel: {radius: 0.25, sides: [left, right]}\nturn: !degrees 180/2\nwide:
 @pytest.fixture(params=['xacro', 'xacro.py'])
 def expand(request, tmp_path):
     """Return a function: what stands in <robot> -> exit code, output, errors."""
+
     def run(inside):
         (tmp_path / 'wheels.yaml').write_text(YAML)
         (tmp_path / 'robot.xacro').write_text(f'{HEAD}{inside}</robot>')
         python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
         done = subprocess.run(
-            [sys.executable, ROOT / 'companions' / 'xacro' / request.param,
-             tmp_path / 'robot.xacro', 'side:=left'],
-            env={**os.environ, 'PYTHONPATH': python_path}, capture_output=True, text=True,
-            timeout=60, check=False)
+            [
+                sys.executable,
+                ROOT / 'companions' / 'xacro' / request.param,
+                tmp_path / 'robot.xacro',
+                'side:=left',
+            ],
+            env={**os.environ, 'PYTHONPATH': python_path},
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
         return done.returncode, done.stdout, done.stderr
 
     return run
 
 
-@pytest.mark.parametrize(('expression', 'value'), [
-    ("load_yaml('wheels.yaml')['wheel']['radius'] * 2", '0.5'),
-    ("xacro.load_yaml('wheels.yaml').wheel.radius", '0.25'),
-    ("xacro.load_yaml('wheels.yaml').wheel.sides[1]", 'right'),
-    ("xacro.load_yaml('wheels.yaml').turn == math.pi / 2", 'True'),
-    ("round(load_yaml('wheels.yaml').wide, 3)", '0.03'),
-    ("xacro.arg('side')", 'left'),
-    ("xacro.dotify(dict(a=3)).a", '3'),
-    ('len([1, 2]) + python.max(1, 4) + sorted([9, 7])[0]', '13'),
-    ('sin(pi / 2)', '1.0'),
-])
+@pytest.mark.parametrize(
+    ('expression', 'value'),
+    [
+        ("load_yaml('wheels.yaml')['wheel']['radius'] * 2", '0.5'),
+        ("xacro.load_yaml('wheels.yaml').wheel.radius", '0.25'),
+        ("xacro.load_yaml('wheels.yaml').wheel.sides[1]", 'right'),
+        ("xacro.load_yaml('wheels.yaml').turn == math.pi / 2", 'True'),
+        ("round(load_yaml('wheels.yaml').wide, 3)", '0.03'),
+        ("xacro.arg('side')", 'left'),
+        ('xacro.dotify(dict(a=3)).a', '3'),
+        ('len([1, 2]) + python.max(1, 4) + sorted([9, 7])[0]', '13'),
+        ('sin(pi / 2)', '1.0'),
+    ],
+)
 def test_expression_of_noetic_is_evaluated(expand, expression, value):
     code, output, errors = expand(f'<link name="${{{expression}}}"/>')
     assert (code, errors) == (0, '')
@@ -49,7 +61,8 @@ def test_expression_of_noetic_is_evaluated(expand, expression, value):
 
 def test_only_an_optional_include_may_be_missing(expand):
     code, output, errors = expand(
-        '<xacro:include filename="nothing.xacro" optional="true"/><link name="a"/>')
+        '<xacro:include filename="nothing.xacro" optional="true"/><link name="a"/>'
+    )
     assert (code, errors) == (0, '')
     assert '<link name="a"/>' in output
     assert expand('<xacro:include filename="nothing.xacro" optional="false"/>')[0] == 2

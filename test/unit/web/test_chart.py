@@ -73,7 +73,11 @@ def test_a_late_sample_leaves_the_curve_as_it_is(chart):
     for time, value in ((10.0, 1.0), (10.1, 2.0), (10.05, 3.0), (10.2, 4.0)):
         chart.note('a', time, value)
     assert [at(chart, 11.0, time) for time in (10.0, 10.05, 10.1, 10.2)] == [
-        [1.0], [1.0], [3.0], [4.0]]
+        [1.0],
+        [1.0],
+        [3.0],
+        [4.0],
+    ]
 
 
 def test_old_samples_are_not_kept(chart):

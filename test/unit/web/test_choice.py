@@ -8,9 +8,13 @@ from support.hostile_texts import TEXTS
 from rosbots_description.web.choice import Choice, _by_text
 from rosbots_description.web.text import MOST, plain
 
-ALIKE = st.lists(st.one_of(
-    st.sampled_from([*TEXTS, 'a\0', 'a\u202e', 'a\ufffd', 'a\ufffd (2)', 'x' * 400, 'x' * 500]),
-    st.text('a\0\u202e (2)')), max_size=9)
+ALIKE = st.lists(
+    st.one_of(
+        st.sampled_from([*TEXTS, 'a\0', 'a\u202e', 'a\ufffd', 'a\ufffd (2)', 'x' * 400, 'x' * 500]),
+        st.text('a\0\u202e (2)'),
+    ),
+    max_size=9,
+)
 
 
 @given(ALIKE)
@@ -34,8 +38,13 @@ def test_what_is_chosen_is_the_name(browser, choice):
     heard = []
     choice.on_update(lambda: heard.append(choice.value))
     choice.offer(['a\0', 'a\u202e', 'b'])
-    browser.wait_until(lambda: browser.control('Which') and browser.controls[
-        browser.control('Which')][1]['options'] == ['a\ufffd', 'a\ufffd (2)', 'b'])
+    browser.wait_until(
+        lambda: (
+            browser.control('Which')
+            and browser.controls[browser.control('Which')][1]['options']
+            == ['a\ufffd', 'a\ufffd (2)', 'b']
+        )
+    )
     browser.choose('Which', 'a\ufffd (2)')
     browser.wait_until(lambda: heard and heard[-1] == 'a\u202e')
     choice.offer(['b'])

@@ -48,13 +48,15 @@ def choose_second(browser, panel):
 
 def pages_html(browser):
     """Return what the page is given as HTML."""
-    return next(props['content'] for kind, props in browser.controls.values()
-                if kind == 'GuiHtmlMessage')
+    return next(
+        props['content'] for kind, props in browser.controls.values() if kind == 'GuiHtmlMessage'
+    )
 
 
 def folder_is_visible(browser):
     return ['GuiFolderMessage', True] in (
-        [kind, props['visible']] for kind, props in browser.controls.values())
+        [kind, props['visible']] for kind, props in browser.controls.values()
+    )
 
 
 def test_nothing_drives_before_there_is_a_topic(browser, robots):
@@ -96,13 +98,30 @@ def test_a_robot_that_is_no_longer_chosen_stops_too(browser, robots, panel, monk
     browser.press('I')
     browser.wait_until(lambda: len(robots.commands) == 4)
     assert sorted(robots.commands) == [
-        ('/a/cmd_vel', 0.0, 0.0), ('/a/cmd_vel', 0.5, 0.0), STOP, ('/b/cmd_vel', 0.5, 0.0)]
+        ('/a/cmd_vel', 0.0, 0.0),
+        ('/a/cmd_vel', 0.5, 0.0),
+        STOP,
+        ('/b/cmd_vel', 0.5, 0.0),
+    ]
 
 
-@pytest.mark.parametrize(('key', 'ahead', 'left'), [
-    ('I', 1, 0), (',', -1, 0), ('J', 0, 1), ('L', 0, -1), ('U', 1, 1), ('O', 1, -1),
-    ('M', -1, -1), ('.', -1, 1), ('W', 1, 0), ('A', 0, 1), ('S', -1, 0), ('D', 0, -1),
-])
+@pytest.mark.parametrize(
+    ('key', 'ahead', 'left'),
+    [
+        ('I', 1, 0),
+        (',', -1, 0),
+        ('J', 0, 1),
+        ('L', 0, -1),
+        ('U', 1, 1),
+        ('O', 1, -1),
+        ('M', -1, -1),
+        ('.', -1, 1),
+        ('W', 1, 0),
+        ('A', 0, 1),
+        ('S', -1, 0),
+        ('D', 0, -1),
+    ],
+)
 def test_keys_are_those_of_teleop_and_of_games(browser, robots, panel, key, ahead, left):
     choose_second(browser, panel)
     browser.press(key)
@@ -115,8 +134,12 @@ def test_keys_of_the_camera_drive_only_if_there_is_something_to_drive(browser, r
     browser.wait_until(lambda: 'stopPropagation' in pages_html(browser))
     browser.wait_until(lambda: browser.idle_keys == set())
     browser.choose('W A S D and arrows drive', False)
-    browser.wait_until(lambda: browser.idle_keys == {
-        'W', 'A', 'S', 'D', 'arrowup', 'arrowdown', 'arrowleft', 'arrowright'})
+    browser.wait_until(
+        lambda: (
+            browser.idle_keys
+            == {'W', 'A', 'S', 'D', 'arrowup', 'arrowdown', 'arrowleft', 'arrowright'}
+        )
+    )
     browser.wait_until(lambda: 'stopPropagation' not in pages_html(browser))
     browser.choose('W A S D and arrows drive', True)
     browser.wait_until(lambda: 'stopPropagation' in pages_html(browser))

@@ -34,8 +34,9 @@ def notices():
 @pytest.fixture
 def panel(site, goals, notices):
     models = Models()
-    models.apply(SceneChange(True, (
-        ShownModel('robot', (ShownLink(1, 'base', Pose((2.0, 0.0, 0.0))),)),)))
+    models.apply(
+        SceneChange(True, (ShownModel('robot', (ShownLink(1, 'base', Pose((2.0, 0.0, 0.0))),)),))
+    )
     panel = GoalPanel(site.gui, goals, models, GroundClicks(site), notices.append)
     panel.refresh()
     return panel
@@ -59,10 +60,12 @@ def click(browser, label, *points):
         browser.click_ray([x, y, 5.0], DOWN)
 
 
-@pytest.mark.parametrize(('label', 'kind', 'topic'), [
-    (GOAL, 'goal', TOPIC), (ESTIMATE, 'estimate', INITIAL)])
+@pytest.mark.parametrize(
+    ('label', 'kind', 'topic'), [(GOAL, 'goal', TOPIC), (ESTIMATE, 'estimate', INITIAL)]
+)
 def test_two_clicks_are_a_place_and_a_heading_in_the_map(
-        browser, goals, notices, label, kind, topic):
+    browser, goals, notices, label, kind, topic
+):
     click(browser, label, (1.0, 3.0), (1.0, 7.0))
     browser.wait_until(lambda: goals.sent)
     ((sent, to, frame, pose),) = goals.sent
@@ -70,20 +73,24 @@ def test_two_clicks_are_a_place_and_a_heading_in_the_map(
     assert pose.position == pytest.approx((3.0, 0.0, 0.0))  # ahead of the map's origin
     assert to_rpy(pose.orientation) == pytest.approx((0.0, 0.0, 0.0))
     browser.wait_until(lambda: notices)
-    assert re.fullmatch(
-        rf"{topic}: x 3\.00 m, y -?0\.00 m, yaw -?0\.00 rad in 'map'", notices[0])
+    assert re.fullmatch(rf"{topic}: x 3\.00 m, y -?0\.00 m, yaw -?0\.00 rad in 'map'", notices[0])
 
 
 def test_the_first_point_is_marked_until_the_second_is_known(browser, goals):
     browser.click(GOAL)
     asks(browser, 'click on the ground')
     browser.click_ray([1.0, 2.0, 5.0], DOWN)
-    browser.wait_until(lambda: [state[1] for node, state in browser.nodes.items()
-                                if node.startswith('/clicked/')] == [[1.0, 2.0, 0.0]])
+    browser.wait_until(
+        lambda: (
+            [state[1] for node, state in browser.nodes.items() if node.startswith('/clicked/')]
+            == [[1.0, 2.0, 0.0]]
+        )
+    )
     asks(browser, 'Now click')
     browser.click_ray([2.0, 2.0, 5.0], DOWN)
-    browser.wait_until(lambda: goals.sent and not any(
-        node.startswith('/clicked/') for node in browser.nodes))
+    browser.wait_until(
+        lambda: goals.sent and not any(node.startswith('/clicked/') for node in browser.nodes)
+    )
 
 
 def test_without_a_map_the_pose_is_in_odom(browser, goals):
@@ -116,8 +123,11 @@ def test_a_goal_that_nobody_takes_any_more_is_refused(browser, goals, panel, not
 
 def test_buttons_are_there_while_somebody_takes_poses(browser, goals, panel):
     def shown():
-        return [label for label in (GOAL, ESTIMATE)
-                if browser.controls[browser.parents[browser.control(label)]][1]['visible']]
+        return [
+            label
+            for label in (GOAL, ESTIMATE)
+            if browser.controls[browser.parents[browser.control(label)]][1]['visible']
+        ]
 
     assert shown() == [GOAL, ESTIMATE]
     goals.goals = ()

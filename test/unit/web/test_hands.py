@@ -33,8 +33,7 @@ def test_delete_and_undo_spawn_it_as_it_was(chosen, simulator):
     chosen.wait_until(lambda: chosen.control("Undo: delete 'a'"))
     chosen.click("Undo: delete 'a'")
     chosen.wait_until(lambda: len(simulator.told) == 3)
-    assert simulator.told == [
-        ('describe', 'a'), ('delete', 'a'), ('insert', TEXT, False, False)]
+    assert simulator.told == [('describe', 'a'), ('delete', 'a'), ('insert', TEXT, False, False)]
 
 
 def test_duplicate_is_beside_it_and_selected(chosen, simulator, page):
@@ -57,8 +56,10 @@ def test_push_acts_on_the_selected_link_else_on_the_canonical_one(chosen, simula
     chosen.click('Push')
     chosen.wait_until(lambda: len(simulator.told) == 2)
     force, torque = (0.0, 0.0, 100.0), (0.0, 0.0, 5.0)
-    assert simulator.told == [('push', 'a::link', force, torque, 0.5, False),
-                              ('push', 'b::link', force, torque, 0.5, True)]
+    assert simulator.told == [
+        ('push', 'a::link', force, torque, 0.5, False),
+        ('push', 'b::link', force, torque, 0.5, True),
+    ]
 
 
 def test_refusal_is_shown_and_nothing_can_be_undone(chosen, simulator):

@@ -74,8 +74,11 @@ def test_models_of_the_model_path_are_offered(ready, simulator, page):
     simulator.names = ['table', 'ground_plane', 'chair']
     for _ in range(insert.LOOKS):
         page.poll()
-    ready.wait_until(lambda: any(props.get('options') == ['table', 'chair']
-                                 for _, props in ready.controls.values()))
+    ready.wait_until(
+        lambda: any(
+            props.get('options') == ['table', 'chair'] for _, props in ready.controls.values()
+        )
+    )
     ready.choose('Model path', 'chair')
     ready.click('Insert model')
     ready.wait_until(lambda: inserted(simulator))
@@ -124,9 +127,12 @@ def test_files_of_two_browsers_at_once_are_not_confused(ready, simulator, site):
 def test_what_a_model_was_spawned_without_is_shown(ready, simulator):
     simulator.missing = [f"plugin '{number}'" for number in range(6)]
     ready.upload(UPLOAD, 'a.urdf', b'a')
-    ready.wait_until(lambda: any(
-        "was spawned without plugin '0', plugin '1', plugin '2', plugin '3' and 2 more" in note
-        for note in ready.notes()))
+    ready.wait_until(
+        lambda: any(
+            "was spawned without plugin '0', plugin '1', plugin '2', plugin '3' and 2 more" in note
+            for note in ready.notes()
+        )
+    )
 
 
 def test_place_is_where_one_clicks_once(ready, simulator, site):
@@ -143,7 +149,9 @@ def test_place_is_where_one_clicks_once(ready, simulator, site):
         ready.click('Insert shape')
     ready.wait_until(lambda: len(inserted(simulator)) == 2)
     assert {text.pose.position for text in inserted(simulator)} == {
-        (2.0, 0.0, 0.0), (1.0, 2.0, 0.0)}
+        (2.0, 0.0, 0.0),
+        (1.0, 2.0, 0.0),
+    }
     ready.wait_until(lambda: not any(node.startswith('/clicked/') for node in ready.nodes))
 
 
@@ -153,11 +161,14 @@ def test_ray_meets_the_ground_or_not():
     assert on_ground((0.0, 0.0, 2.0), (1.0, 0.0, -0.001)) is None  # 2 km away
 
 
-@pytest.mark.parametrize(('kind', 'geometry', 'moments'), [
-    ('box', Box((1.0, 2.0, 3.0)), (13.0, 10.0, 5.0)),
-    ('sphere', Sphere(0.5), (1.2, 1.2, 1.2)),
-    ('cylinder', Cylinder(0.5, 3.0), (9.75, 9.75, 1.5)),
-])
+@pytest.mark.parametrize(
+    ('kind', 'geometry', 'moments'),
+    [
+        ('box', Box((1.0, 2.0, 3.0)), (13.0, 10.0, 5.0)),
+        ('sphere', Sphere(0.5), (1.2, 1.2, 1.2)),
+        ('cylinder', Cylinder(0.5, 3.0), (9.75, 9.75, 1.5)),
+    ],
+)
 def test_inertia_is_that_of_a_solid(kind, geometry, moments):
     (link,) = shape(kind, (1.0, 2.0, 3.0), 12.0, (1.0, 1.0, 1.0), False).links
     inertial = link.inertial

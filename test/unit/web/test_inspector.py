@@ -24,16 +24,29 @@ from rosbots_description.sim.description import (
 )
 from rosbots_description.web import descriptions
 
-BASE = ShownLink(1, 'base', Pose((1.0, 0.0, 0.0)), collisions=(
-    Collision('box', Box((1.0, 2.0, 0.5)), surface=Surface(0.5, 0.25)),),
-    inertial=Inertial(4.0), sensors=(ShownSensor('eye<1>', 'camera'),))
-WHEEL = ShownLink(2, 'wheel', Pose(), collisions=(
-    Collision('rim', Cylinder(0.2, 0.1)), Collision('hub', Sphere(0.1))),
-    inertial=Inertial(1.5), gravity=False)
+BASE = ShownLink(
+    1,
+    'base',
+    Pose((1.0, 0.0, 0.0)),
+    collisions=(Collision('box', Box((1.0, 2.0, 0.5)), surface=Surface(0.5, 0.25)),),
+    inertial=Inertial(4.0),
+    sensors=(ShownSensor('eye<1>', 'camera'),),
+)
+WHEEL = ShownLink(
+    2,
+    'wheel',
+    Pose(),
+    collisions=(Collision('rim', Cylinder(0.2, 0.1)), Collision('hub', Sphere(0.1))),
+    inertial=Inertial(1.5),
+    gravity=False,
+)
 JOINT = JointSpec('axle', 'revolute', 'base', 'wheel', lower=-1.0, upper=2.0)
 CART = ShownModel('cart', (BASE, WHEEL), (JOINT,))
-GROUND = ShownModel('ground', (ShownLink(3, 'link', Pose(), collisions=(
-    Collision('plane', Plane()),)),), static=True)
+GROUND = ShownModel(
+    'ground',
+    (ShownLink(3, 'link', Pose(), collisions=(Collision('plane', Plane()),)),),
+    static=True,
+)
 
 
 @pytest.fixture
@@ -58,17 +71,30 @@ def test_numbers_are_shown_of_what_is_selected_and_asked_for_only_then(world, si
     page.poll()
     assert simulator.told == []
     world.wait_until(lambda: any('Click on a model' in text for text in world.texts()))
-    simulator.where = (Pose((1.0, -2.0, 0.5), from_rpy(0.0, 0.0, 1.5)),
-                       Twist((0.25, 0.0, 0.0), (0.0, 0.0, -0.125)))
+    simulator.where = (
+        Pose((1.0, -2.0, 0.5), from_rpy(0.0, 0.0, 1.5)),
+        Twist((0.25, 0.0, 0.0), (0.0, 0.0, -0.125)),
+    )
     page.selection.choose('cart')
     page.poll()
     assert simulator.told == [('state', 'cart', None)]
     world.wait_until(lambda: '-2.000' in world.tables())
     shown = world.tables()
-    for text in ('<b>cart</b>', '1.500', '0.250', '-0.125', '>5.5<', 'each collision has its own',
-                 'Joints (1)', 'axle: revolute, -1 to 2, base → wheel', 'Collisions (3)',
-                 'box 1 x 2 x 0.5 m, mu 0.5, mu2 0.25', 'cylinder, radius 0.2 m, length 0.1 m',
-                 'Sensors (1)', 'eye&lt;1&gt;: camera'):
+    for text in (
+        '<b>cart</b>',
+        '1.500',
+        '0.250',
+        '-0.125',
+        '>5.5<',
+        'each collision has its own',
+        'Joints (1)',
+        'axle: revolute, -1 to 2, base → wheel',
+        'Collisions (3)',
+        'box 1 x 2 x 0.5 m, mu 0.5, mu2 0.25',
+        'cylinder, radius 0.2 m, length 0.1 m',
+        'Sensors (1)',
+        'eye&lt;1&gt;: camera',
+    ):
         assert text in shown
     simulator.missing = ['plugin <b>']  # known by now
     page.selection.choose('cart', 'base')
@@ -117,7 +143,8 @@ def test_what_is_typed_stays_while_other_properties_change(world, site, simulato
 
 
 def test_what_was_set_is_not_filled_in_again_when_the_simulator_shows_it(
-        world, site, simulator, page):
+    world, site, simulator, page
+):
     page.selection.choose('cart', 'base')
     world.wait_until(lambda: world.value('Mass [kg]') == 4.0)
     world.choose('Mass [kg]', 8.0)
@@ -135,8 +162,7 @@ def test_pose_and_velocity_are_set_one_without_the_other_and_undone(world, simul
     now = Pose((1.0, 2.0, 3.0)), Twist((0.5, 0.0, 0.0))
     simulator.where = now
     simulator.motion(clock(_1=Pose((7.0, 0.0, 0.0))))
-    world.wait_until(lambda: world.nodes.get(
-        '/models/cart/base', [0, 0])[1] == [7.0, 0.0, 0.0])
+    world.wait_until(lambda: world.nodes.get('/models/cart/base', [0, 0])[1] == [7.0, 0.0, 0.0])
     page.selection.choose('cart', 'base')
     world.wait_until(lambda: world.value('Position [m]') == [7.0, 0.0, 0.0])
     world.choose('Position [m]', [4.0, 5.0, 6.0])
@@ -182,9 +208,11 @@ def test_friction_is_set_of_all_collisions_and_undone_of_each(world, simulator, 
     simulator.told.clear()
     world.click("Undo: friction of 'cart'")
     world.wait_until(lambda: len(simulator.told) == 3)
-    assert simulator.told == [('set_friction', 'cart::base::box', 0.5, 0.25),
-                              ('set_friction', 'cart::wheel::rim', 1.0, 1.0),
-                              ('set_friction', 'cart::wheel::hub', 1.0, 1.0)]
+    assert simulator.told == [
+        ('set_friction', 'cart::base::box', 0.5, 0.25),
+        ('set_friction', 'cart::wheel::rim', 1.0, 1.0),
+        ('set_friction', 'cart::wheel::hub', 1.0, 1.0),
+    ]
 
 
 def test_what_a_model_does_not_have_cannot_be_set(world, page):
@@ -209,7 +237,8 @@ def test_a_refusal_is_shown_and_leaves_nothing_to_undo(world, simulator, page):
 def test_long_lists_end_and_meshes_are_named():
     many = tuple(Collision(f'c{n}', Mesh('/folder/<x>.stl')) for n in range(150))
     listed = descriptions.parts_html(
-        ShownModel('m', (ShownLink(1, 'l', Pose(), collisions=many),)), None)
+        ShownModel('m', (ShownLink(1, 'l', Pose(), collisions=many),)), None
+    )
     assert 'Collisions (150)' in listed
     assert 'and 50 more' in listed
     assert 'c99: mesh &lt;x&gt;.stl' in listed

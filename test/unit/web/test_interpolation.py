@@ -55,16 +55,23 @@ def test_both_signs_of_a_quaternion_are_the_same_orientation():
     assert half.poses[1].orientation == pytest.approx(from_rpy(0.0, 0.0, 0.3))
 
 
-@pytest.mark.parametrize(('to', 'is_jump'), [
-    (at(0.3), False), (at(0.5), True), (at(0.0, 1.5), False), (at(0.0, 1.6), True),
-])
+@pytest.mark.parametrize(
+    ('to', 'is_jump'),
+    [
+        (at(0.3), False),
+        (at(0.5), True),
+        (at(0.0, 1.5), False),
+        (at(0.0, 1.6), True),
+    ],
+)
 def test_a_jump_is_not_smeared(to, is_jump):
     half = halfway(clock(1.0, _1=at(), _2=at()), clock(1.04, _1=to, _2=at(0.1)))
     assert half.poses.keys() == ({2} if is_jump else {1, 2})
 
 
-@pytest.mark.parametrize('last', [
-    None, clock(2.0, _1=at()), clock(1.0, _1=at()), clock(0.9), clock(0.9, _2=at())])
+@pytest.mark.parametrize(
+    'last', [None, clock(2.0, _1=at()), clock(1.0, _1=at()), clock(0.9), clock(0.9, _2=at())]
+)
 def test_there_is_no_halfway_from_nowhere_nor_without_time(last):
     assert halfway(last, clock(1.0, _1=at(0.01))) is None
 

@@ -74,8 +74,10 @@ def test_models_with_joints_are_offered(browser):
 
 def test_sliders_have_the_limits_of_their_joints(browser):
     choose(browser, 'arm', 'elbow [rad]', 'wheel [rad]', 'lift [m]')
-    limits = [(props(browser, name)['min'], props(browser, name)['max'])
-              for name in ('elbow [rad]', 'wheel [rad]', 'lift [m]')]
+    limits = [
+        (props(browser, name)['min'], props(browser, name)['max'])
+        for name in ('elbow [rad]', 'wheel [rad]', 'lift [m]')
+    ]
     assert limits == [(-1.0, 2.0), (-math.pi, math.pi), (0.0, 1.0)]
 
 
@@ -93,12 +95,14 @@ def test_a_slider_sets_a_position(browser, joints):
     assert joints.told == [('set_position', 'arm', 'elbow', 1.5)]
 
 
-@pytest.mark.parametrize(('what', 'label', 'greatest', 'told'), [
-    ('velocity', 'elbow [rad/s]', 10.0, ('set_velocity', 'arm', 'elbow', 2.0, 10.0)),
-    ('effort', 'elbow [N m]', 5.0, ('set_effort', 'arm', 'elbow', 2.0)),
-])
-def test_a_slider_sets_a_velocity_or_an_effort(
-        browser, joints, what, label, greatest, told):
+@pytest.mark.parametrize(
+    ('what', 'label', 'greatest', 'told'),
+    [
+        ('velocity', 'elbow [rad/s]', 10.0, ('set_velocity', 'arm', 'elbow', 2.0, 10.0)),
+        ('effort', 'elbow [N m]', 5.0, ('set_effort', 'arm', 'elbow', 2.0)),
+    ],
+)
+def test_a_slider_sets_a_velocity_or_an_effort(browser, joints, what, label, greatest, told):
     browser.choose('Sliders set', what)
     choose(browser, 'arm', label)
     assert props(browser, label)['max'] == greatest
@@ -129,12 +133,16 @@ def test_topics_of_controllers_have_sliders(browser, joints, panel):
     browser.wait_until(lambda: not browser.control('/elbow_controller/command'))
 
 
-@pytest.mark.parametrize(('topic', 'limits', 'told'), [
-    (ARM, (-1.0, 2.0), (1.5, 0.25)),  # the other joint stays where it stands
-    (FORCES, (-10.0, 10.0), (1.5, 0.0)),
-])
+@pytest.mark.parametrize(
+    ('topic', 'limits', 'told'),
+    [
+        (ARM, (-1.0, 2.0), (1.5, 0.25)),  # the other joint stays where it stands
+        (FORCES, (-10.0, 10.0), (1.5, 0.0)),
+    ],
+)
 def test_a_controller_of_several_joints_has_a_slider_for_each(
-        browser, joints, panel, topic, limits, told):
+    browser, joints, panel, topic, limits, told
+):
     elbow, lift = (f'{topic.name} {name}' for name in topic.joints)
     joints.topics = (topic,)
     panel.refresh()
@@ -173,8 +181,11 @@ def test_sliders_stay_while_nothing_else_is_chosen(browser, panel):
     panel._show()  # as the callback does, when the page has looked again before it
     browser.choose('Range', 3.0)
     browser.wait_until(lambda: browser.control('elbow [rad/s]') not in (None, slider))
-    made = [message for message in browser.messages if message['type'] == 'GuiSliderMessage'
-            and message['props']['label'] == 'elbow [rad/s]']
+    made = [
+        message
+        for message in browser.messages
+        if message['type'] == 'GuiSliderMessage' and message['props']['label'] == 'elbow [rad/s]'
+    ]
     assert len(made) == 2
 
 

@@ -42,10 +42,21 @@ def drag(browser, joystick, phase, right=0.0, down=0.0, node=KNOB):
         at[0] += right * pad.radius
         at[1] += down * pad.radius
     owner = next(m['owner'] for m in browser.messages if m.get('name') == node and 'owner' in m)
-    browser.send({
-        'type': 'SceneNodeDragMessage', 'phase': phase, 'name': node, 'instance_index': None,
-        'start_position': at, 'start_screen_pos': [0.5, 0.5], 'end_position': at,
-        'end_screen_pos': [0.5, 0.5], 'button': 'left', 'modifier': None, 'owner': owner})
+    browser.send(
+        {
+            'type': 'SceneNodeDragMessage',
+            'phase': phase,
+            'name': node,
+            'instance_index': None,
+            'start_position': at,
+            'start_screen_pos': [0.5, 0.5],
+            'end_position': at,
+            'end_screen_pos': [0.5, 0.5],
+            'button': 'left',
+            'modifier': None,
+            'owner': owner,
+        }
+    )
 
 
 def test_the_pad_is_in_the_lower_left_corner(browser, joystick, site):
@@ -58,15 +69,20 @@ def test_the_pad_is_in_the_lower_left_corner(browser, joystick, site):
 
 
 def test_it_stays_there_while_the_camera_moves_and_only_while_it_is_there(
-        browser, joystick, site, capfd):
+    browser, joystick, site, capfd
+):
     def moves():
-        return [m['position'] for m in browser.messages
-                if m['type'] == 'SetPositionMessage' and m['name'] == NODE]
+        return [
+            m['position']
+            for m in browser.messages
+            if m['type'] == 'SetPositionMessage' and m['name'] == NODE
+        ]
 
     (client,) = site.get_clients().values()
     browser.look_at([1.0, 0.0, 0.0], position=[5.0, 0.0, 0.0])
-    browser.wait_until(lambda: moves()[-1:] == [pytest.approx(
-        corner(client.camera).position, abs=1e-3)])
+    browser.wait_until(
+        lambda: moves()[-1:] == [pytest.approx(corner(client.camera).position, abs=1e-3)]
+    )
     browser.choose('Joystick', False)
     browser.wait_until(lambda: KNOB not in browser.nodes)
     told = len(moves())
@@ -150,7 +166,8 @@ def test_a_browser_that_goes_while_it_steers_lets_go(browser, joystick, commands
 
 
 def test_a_pad_that_is_removed_while_it_is_dragged_lets_go(
-        browser, joystick, commands, site, capfd):
+    browser, joystick, commands, site, capfd
+):
     drag(browser, joystick, 'start')
     drag(browser, joystick, 'update', down=-1.0)
     browser.wait_until(lambda: commands)

@@ -34,8 +34,9 @@ def maps():
 @pytest.fixture
 def models():
     models = Models()
-    models.apply(SceneChange(True, (
-        ShownModel('robot', (ShownLink(1, 'base', Pose((6.0, 0.0, 0.0))),)),)))
+    models.apply(
+        SceneChange(True, (ShownModel('robot', (ShownLink(1, 'base', Pose((6.0, 0.0, 0.0))),)),))
+    )
     return models
 
 
@@ -78,14 +79,18 @@ def test_a_map_covers_its_cells_from_its_origin_on(browser):
     # The centre is half of 2 m by 1 m from the origin, along axes that are turned by 0.5 rad.
     cos, sin = math.cos(0.5), math.sin(0.5)
     assert position(browser, grid)[:2] == pytest.approx(
-        (-1.0 + cos - 0.5 * sin, 2.0 + sin + 0.5 * cos))
+        (-1.0 + cos - 0.5 * sin, 2.0 + sin + 0.5 * cos)
+    )
 
 
 def test_without_tf_a_map_is_the_worlds(browser, maps):
     maps.place = None
     browser.choose(MAP, True)
-    browser.wait_until(lambda: any("TF does not connect its frame 'map' with a robot" in text
-                                   for text in browser.texts()))
+    browser.wait_until(
+        lambda: any(
+            "TF does not connect its frame 'map' with a robot" in text for text in browser.texts()
+        )
+    )
     assert position(browser) == [0.0, 0.0, 0.0]
     maps.place = 'base', Pose((-5.0, 0.0, 0.0))  # TF was only late
     browser.wait_until(lambda: position(browser) == [1.0, 0.0, 0.0])

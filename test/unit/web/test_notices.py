@@ -23,8 +23,11 @@ def test_what_is_left_out_is_told_at_the_end(site, browser):
 
     def told():
         notices.refresh()
-        return [int(count[1]) for note in browser.notes()
-                if (count := re.fullmatch(r'(\d+) more notices? (is|are) left out', note))]
+        return [
+            int(count[1])
+            for note in browser.notes()
+            if (count := re.fullmatch(r'(\d+) more notices? (is|are) left out', note))
+        ]
 
     browser.wait_until(lambda: browser.notes().count('no') + sum(told()) == MANY * THREADS)
     assert browser.notes().count('no') >= AT_ONCE

@@ -105,25 +105,40 @@ def test_a_mesh_that_cannot_be_read_is_left_out(browser, simulator, caplog):
 
 def test_only_a_ground_has_a_grid(site):
     view = SceneView(site, lambda *_: None)
-    view.apply(SceneChange(True, (model('ground', 1, Plane()), model('wall', 2, Plane(
-        (1.0, 0.0, 0.0))), model('box', 3, position=(100.0, 0.0, 0.0)))))
+    view.apply(
+        SceneChange(
+            True,
+            (
+                model('ground', 1, Plane()),
+                model('wall', 2, Plane((1.0, 0.0, 0.0))),
+                model('box', 3, position=(100.0, 0.0, 0.0)),
+            ),
+        )
+    )
     assert site.scene.get_handle_by_name('/models/ground/link/0 v/grid') is not None
     assert site.scene.get_handle_by_name('/models/wall/link/0 v/grid') is None
 
 
 def test_everything_is_in_view_and_the_start_looks_there(browser, simulator):
-    simulator.change(SceneChange(True, tuple(
-        model(str(x), x, position=(float(x), 0.0, 0.0)) for x in (1, 9))))
-    browser.wait_until(lambda: [m for m in browser.messages if m['type'] ==
-                                'SetCameraLookAtMessage' and m['look_at'] == [5.0, 0.0, 1.0]])
+    simulator.change(
+        SceneChange(True, tuple(model(str(x), x, position=(float(x), 0.0, 0.0)) for x in (1, 9)))
+    )
+    browser.wait_until(
+        lambda: [
+            m
+            for m in browser.messages
+            if m['type'] == 'SetCameraLookAtMessage' and m['look_at'] == [5.0, 0.0, 1.0]
+        ]
+    )
 
 
 def test_a_view_is_chosen_for_those_who_come_only(browser, simulator, site, page, monkeypatch):
     simulator.change(SceneChange(True, (model('a', 1),)))
     chosen = []
     eye, target = (3.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    monkeypatch.setattr(page._start, 'choose',
-                        lambda aspect=None: chosen.append(aspect) or (eye, target))
+    monkeypatch.setattr(
+        page._start, 'choose', lambda aspect=None: chosen.append(aspect) or (eye, target)
+    )
     simulator.change(SceneChange(models=(model('b', 2),)))
     assert chosen == []
     with Browser(site.address) as second:
@@ -155,10 +170,13 @@ def test_the_clock_shows_times_and_the_real_time_factor(browser, simulator):
     simulator.motion(clock(10.0, 20.0))
     browser.wait_until(lambda: any('00:00:10.000' in text for text in browser.texts()))
     simulator.motion(clock(10.5, 21.0))
-    browser.wait_until(lambda: any('00:00:10.500' in text and '0.50\u00d7' in text
-                                   for text in browser.texts()))
-    assert any('real time 00:00:21.000, 10500 iterations' in props.get('content', '')
-               for _, props in browser.controls.values())  # as a tooltip
+    browser.wait_until(
+        lambda: any('00:00:10.500' in text and '0.50\u00d7' in text for text in browser.texts())
+    )
+    assert any(
+        'real time 00:00:21.000, 10500 iterations' in props.get('content', '')
+        for _, props in browser.controls.values()
+    )  # as a tooltip
     simulator.motion(clock(0.0, 22.0))  # reset
     simulator.motion(clock(2.0, 23.0, paused=True))
     browser.wait_until(lambda: any('paused' in text for text in browser.texts()))
@@ -174,7 +192,12 @@ def test_buttons_tell_the_simulator(browser, simulator):
     browser.choose('Speed', 'as fast as possible')
     browser.wait_until(lambda: len(simulator.told) == 5)
     assert simulator.told == [
-        ('step', 5), ('pause',), ('reset_world',), ('reset_simulation',), ('set_speed', 0.0)]
+        ('step', 5),
+        ('pause',),
+        ('reset_world',),
+        ('reset_simulation',),
+        ('set_speed', 0.0),
+    ]
     simulator.motion(clock(paused=True))
     browser.wait_until(lambda: browser.control('Play'))
     browser.click('Play')
@@ -183,8 +206,12 @@ def test_buttons_tell_the_simulator(browser, simulator):
 
 def test_the_speed_of_the_simulator_is_shown_and_not_told_to_it(browser, simulator):
     simulator.change(SceneChange(True, max_update_rate=100.0))
-    browser.wait_until(lambda: ['Speed', '0.1x'] in (
-        [props.get('label'), props.get('value')] for _, props in browser.controls.values()))
+    browser.wait_until(
+        lambda: (
+            ['Speed', '0.1x']
+            in ([props.get('label'), props.get('value')] for _, props in browser.controls.values())
+        )
+    )
     assert simulator.told == []
 
 
@@ -195,9 +222,13 @@ def test_a_speed_that_was_chosen_stays_until_the_simulator_has_another(browser, 
     simulator.change(SceneChange())  # on its way since before
     simulator.change(SceneChange(max_update_rate=100.0))
     browser.wait_until(lambda: browser.value('Speed') == '0.1x')
-    shown = [message['updates']['value'] for message in browser.messages
-             if message['type'] == 'GuiUpdateMessage' and 'value' in message['updates']
-             and message['uuid'] == browser.control('Speed')]
+    shown = [
+        message['updates']['value']
+        for message in browser.messages
+        if message['type'] == 'GuiUpdateMessage'
+        and 'value' in message['updates']
+        and message['uuid'] == browser.control('Speed')
+    ]
     assert shown == ['0.1x']
 
 

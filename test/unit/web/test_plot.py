@@ -58,12 +58,16 @@ def plots(browser):
 
 def test_a_curve_is_chosen_by_topic_and_field(browser, signals):
     browser.choose('Topic', '/odom')
-    browser.wait_until(lambda: 'twist/twist/linear/x' in browser.controls[
-        browser.control('Field')][1]['options'])
+    browser.wait_until(
+        lambda: 'twist/twist/linear/x' in browser.controls[browser.control('Field')][1]['options']
+    )
     browser.choose('Field', 'twist/twist/linear/x')
-    browser.wait_until(lambda: any(
-        m['type'] == 'GuiUpdateMessage' and m['updates'].get('value') == SPEED
-        for m in browser.messages))
+    browser.wait_until(
+        lambda: any(
+            m['type'] == 'GuiUpdateMessage' and m['updates'].get('value') == SPEED
+            for m in browser.messages
+        )
+    )
     browser.click('Add curve')
     browser.wait_until(lambda: signals.open_curves == {SPEED})
 
@@ -87,8 +91,11 @@ def test_the_box_of_a_curve_stays_while_others_come_and_go(browser, signals):
     browser.choose(TRUTH, False)
     browser.wait_until(lambda: signals.open_curves == {SPEED} and not browser.control(TRUTH))
     assert browser.control(SPEED) == box  # a click on it was not lost
-    assert all(message['props']['order'] < browser.controls[box][1]['order']
-               for message in browser.messages if message['type'] == 'GuiUplotMessage')
+    assert all(
+        message['props']['order'] < browser.controls[box][1]['order']
+        for message in browser.messages
+        if message['type'] == 'GuiUplotMessage'
+    )
 
 
 def test_a_curve_is_added_once(browser, signals):

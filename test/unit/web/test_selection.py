@@ -19,7 +19,8 @@ def two_links(name, number):
 
 
 def test_a_click_selects_the_model_and_a_second_one_its_link(
-        browser, simulator, page, site, monkeypatch):
+    browser, simulator, page, site, monkeypatch
+):
     monkeypatch.setattr(views, 'DOUBLE', 0.0)
     simulator.change(SceneChange(True, (two_links('a', 1), model('b', 3))))
     browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
@@ -51,13 +52,17 @@ def test_the_box_is_around_what_is_seen(browser, simulator, page, site):
 def test_grounds_take_no_clicks(browser, simulator):
     simulator.change(SceneChange(True, (model('a', 1), model('ground', 2, Plane()))))
     browser.wait_until(lambda: '/models/ground/link/0 v/grid' in browser.nodes)
-    bound = {m['name'] for m in browser.messages
-             if m['type'] == 'SetSceneNodeClickBindingsMessage' and m['bindings']}
+    bound = {
+        m['name']
+        for m in browser.messages
+        if m['type'] == 'SetSceneNodeClickBindingsMessage' and m['bindings']
+    }
     assert bound == {CLICK}
 
 
 def test_it_survives_a_simulator_that_numbers_anew_and_a_model_that_changes(
-        browser, simulator, page):
+    browser, simulator, page
+):
     simulator.change(SceneChange(True, (two_links('a', 1),)))
     page.selection.choose('a', 'other')
     simulator.change(SceneChange(True, (two_links('a', 7),)))
@@ -86,8 +91,9 @@ def test_it_ends_when_the_model_goes(browser, simulator, page):
 def test_models_know_where_they_are():
     models = Models()
     (link,) = model('a', 1, position=(1.0, 0.0, 3.0)).links
-    models.apply(SceneChange(True, (ShownModel('a', (link,), canonical_pose=Pose(
-        (0.0, 0.0, 1.0))),)))
+    models.apply(
+        SceneChange(True, (ShownModel('a', (link,), canonical_pose=Pose((0.0, 0.0, 1.0))),))
+    )
     assert models.pose('a') == Pose((1.0, 0.0, 2.0))
     models.move(clock(_1=Pose((5.0, 0.0, 3.0)), _2=Pose()))
     assert models.pose('a') == Pose((5.0, 0.0, 2.0))

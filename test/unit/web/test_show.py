@@ -24,11 +24,22 @@ from rosbots_description.sim.description import (
 from rosbots_description.web.markers import MARKERS, equal_box
 
 TURNED = Pose((0.0, 0.0, 0.5), from_rpy(0.0, 0.0, math.pi / 2.0))
-ARM = ShownLink(1, 'arm', Pose(), collisions=(
-    Collision('box', Box((1.0, 1.0, 1.0)), TURNED), Collision('gone', Mesh('/gone.stl')),
-    Collision('plane', Plane())), inertial=Inertial(2.0, TURNED, 1.0, 1.0, 1.0))
-ROBOT = ShownModel('robot', (ARM, ShownLink(2, 'foot', Pose())), (
-    JointSpec('shoulder', 'revolute', 'world', 'arm', Pose((0.0, 0.0, 1.0)), (0.0, 1.0, 0.0)),))
+ARM = ShownLink(
+    1,
+    'arm',
+    Pose(),
+    collisions=(
+        Collision('box', Box((1.0, 1.0, 1.0)), TURNED),
+        Collision('gone', Mesh('/gone.stl')),
+        Collision('plane', Plane()),
+    ),
+    inertial=Inertial(2.0, TURNED, 1.0, 1.0, 1.0),
+)
+ROBOT = ShownModel(
+    'robot',
+    (ARM, ShownLink(2, 'foot', Pose())),
+    (JointSpec('shoulder', 'revolute', 'world', 'arm', Pose((0.0, 0.0, 1.0)), (0.0, 1.0, 0.0)),),
+)
 PLACES = {
     'Frames': {'': 'FrameMessage'},
     'Joint axes': {'': 'ArrowMessage'},
@@ -40,8 +51,11 @@ PLACES = {
 
 def nodes(browser, path):
     """Return the types of the nodes at and below a path."""
-    return {name.removeprefix(path): state[0] for name, state in browser.nodes.items()
-            if name.startswith(path)}
+    return {
+        name.removeprefix(path): state[0]
+        for name, state in browser.nodes.items()
+        if name.startswith(path)
+    }
 
 
 @pytest.mark.parametrize('name', MARKERS)
@@ -106,8 +120,11 @@ def test_visuals_are_drawn_in_another_way_but_grounds(browser, simulator, look):
 
 def files(browser, path):
     """Return the contents of all files that a browser got below a path."""
-    return [bytes(m['props']['glb_data']) for m in browser.messages
-            if m['type'] == 'GlbMessage' and m['name'].startswith(path)]
+    return [
+        bytes(m['props']['glb_data'])
+        for m in browser.messages
+        if m['type'] == 'GlbMessage' and m['name'].startswith(path)
+    ]
 
 
 def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, site, page):
@@ -115,8 +132,12 @@ def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, si
     browser.choose('Contacts and forces', True)
     browser.wait_until(lambda: simulator.contacts.show)
     up, down = (0.0, 0.0, 10.0), (5.0, 0.0, -10.0)
-    simulator.contacts.show([ShownContact((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), up),
-                             ShownContact((2.0, 0.0, 0.0), (0.0, 0.0, 1.0), down)])
+    simulator.contacts.show(
+        [
+            ShownContact((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), up),
+            ShownContact((2.0, 0.0, 0.0), (0.0, 0.0, 1.0), down),
+        ]
+    )
     browser.wait_until(lambda: '/contacts/forces' in browser.nodes)
     points = site.scene.get_handle_by_name('/contacts/points')
     lines = site.scene.get_handle_by_name('/contacts/forces')
@@ -160,11 +181,17 @@ def test_cameras_follow_the_selected_model_and_keep_their_offset(browser, simula
     browser.send(CAMERA | {'position': [3.0, 0.0, 2.0], 'look_at': [1.0, 0.0, 1.0]})
     browser.wait_until(lambda: page_camera(page) == (3.0, 0.0, 2.0))
     simulator.motion(clock(_1=Pose((10.0, 5.0, 0.0))))
-    browser.wait_until(lambda: [m['position'] for m in browser.messages
-                                if m['type'] == 'SetCameraPositionMessage'][-1:] == [
-                                    [12.0, 5.0, 1.0]])
-    assert [m['look_at'] for m in browser.messages
-            if m['type'] == 'SetCameraLookAtMessage'][-1] == [10.0, 5.0, 0.0]
+    browser.wait_until(
+        lambda: (
+            [m['position'] for m in browser.messages if m['type'] == 'SetCameraPositionMessage'][
+                -1:
+            ]
+            == [[12.0, 5.0, 1.0]]
+        )
+    )
+    assert [m['look_at'] for m in browser.messages if m['type'] == 'SetCameraLookAtMessage'][
+        -1
+    ] == [10.0, 5.0, 0.0]
     told = len(browser.messages)
     simulator.motion(clock(_1=Pose((10.0, 5.0, 0.0001))))  # it rests
     browser.read()

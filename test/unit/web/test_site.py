@@ -152,8 +152,7 @@ def test_a_malformed_address_is_refused_in_a_sentence(site, headers):
 
 
 def test_without_a_token_only_names_of_this_machine_lead_in(open_site):
-    assert (open_site.token, open_site.address) == (
-        '', f'http://127.0.0.1:{open_site.get_port()}/')
+    assert (open_site.token, open_site.address) == ('', f'http://127.0.0.1:{open_site.get_port()}/')
     status, _, text = get(open_site.address)
     assert (status, '<html' in text) == (200, True)
     for host in ('evil.example', 'evil.example:80', '192.0.2.1', ''):
@@ -176,8 +175,7 @@ def test_without_a_token_a_public_window_has_the_names_of_its_machine():
 def test_every_answer_forbids_frames_and_foreign_scripts(site):
     for address in (site.address, entered(site)[0], root(site), f'{root(site)}nothing'):
         _, headers, _ = get(address)
-        policy = dict(part.split(' ', 1) for part in
-                      headers['Content-Security-Policy'].split('; '))
+        policy = dict(part.split(' ', 1) for part in headers['Content-Security-Policy'].split('; '))
         assert policy['frame-ancestors'] == policy['default-src'] == "'none'"
         assert 'unsafe-inline' not in policy['script-src']
         assert 'http' not in headers['Content-Security-Policy']
@@ -208,14 +206,24 @@ def test_the_page_is_not_published_through_other_servers(site):
 def test_a_port_in_use_is_refused_in_a_sentence():
     with closing(socket.create_server(('127.0.0.1', 0))) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(WindowError, match=rf'no window at 127\.0\.0\.1, port {port}: Address '
-                                              'already in use; web_port'):
+        with pytest.raises(
+            WindowError,
+            match=rf'no window at 127\.0\.0\.1, port {port}: Address '
+            'already in use; web_port',
+        ):
             Site('127.0.0.1', port)
 
 
-@pytest.mark.parametrize(('host', 'port'), [
-    ('192.0.2.1', 0), ('no such host', 0), ('127.0.0.1', 99999), ('127.0.0.1', -1), ('a' * 70, 1),
-])
+@pytest.mark.parametrize(
+    ('host', 'port'),
+    [
+        ('192.0.2.1', 0),
+        ('no such host', 0),
+        ('127.0.0.1', 99999),
+        ('127.0.0.1', -1),
+        ('a' * 70, 1),
+    ],
+)
 def test_an_address_of_another_machine_is_refused_in_a_sentence(host, port):
     with pytest.raises(WindowError, match=r'^no window at .*, port -?\d+: .+; web_port and web_'):
         Site(host, port)

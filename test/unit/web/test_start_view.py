@@ -27,8 +27,11 @@ def show(view, *models, camera=None):
 
 def test_everything_is_looked_at_from_above_and_grounds_are_not(view):
     eye, target = show(
-        view, model('ground', 1, Plane()), model('box', 2, position=(99.0, 0.0, 0.0)),
-        model('other', 3, position=(101.0, 0.0, 0.0)))
+        view,
+        model('ground', 1, Plane()),
+        model('box', 2, position=(99.0, 0.0, 0.0)),
+        model('other', 3, position=(101.0, 0.0, 0.0)),
+    )
     assert target == pytest.approx((100.0, 0.0, 1.0))
     assert 2.0 < eye[2] < 3.0
     assert eye[0] > 101.0 and eye[1] < -1.0  # from ahead at the right
@@ -53,8 +56,9 @@ def test_the_view_is_not_from_behind_a_wall(view, yaw):
 
 
 def test_where_everything_is_hidden_from_everywhere_some_view_is_chosen(view):
-    eye, target = show(view, model('box', 1, Box((0.2, 0.2, 0.2))),
-                       model('shell', 2, Box((4.0, 4.0, 4.0))))
+    eye, target = show(
+        view, model('box', 1, Box((0.2, 0.2, 0.2))), model('shell', 2, Box((4.0, 4.0, 4.0)))
+    )
     assert np.linalg.norm(np.subtract(eye, target)) > 4.0
 
 

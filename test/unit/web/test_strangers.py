@@ -45,12 +45,17 @@ def site(served):
     simulator.told.clear()
     yield site
     with Browser(site.address) as browser:
+
         def is_shown():
             if show := simulator.change:
                 show(SceneChange(True))  # again: the page closes when the one before has left
-            return (browser.control('Pause') and browser.control(UPLOAD)
-                    and {'SetCameraPositionMessage'} <= {
-                        message['type'] for message in browser.messages})
+            return (
+                browser.control('Pause')
+                and browser.control(UPLOAD)
+                and {'SetCameraPositionMessage'}
+                <= {message['type'] for message in browser.messages}
+            )
+
         browser.wait_until(is_shown)
 
 
@@ -64,8 +69,9 @@ def browser(site, served):
 def answer(site, request):
     """Return all that is answered to the bytes of a request."""
     with socket.create_connection(('127.0.0.1', site.get_port()), timeout=PATIENCE) as connection:
-        connection.sendall(request.encode('latin-1').replace(
-            b'PORT', str(site.get_port()).encode()))
+        connection.sendall(
+            request.encode('latin-1').replace(b'PORT', str(site.get_port()).encode())
+        )
         connection.shutdown(socket.SHUT_WR)
         received = b''
         try:
@@ -81,30 +87,84 @@ def request(target='/', headers='', method='GET', host='127.0.0.1:PORT', version
 
 
 TARGETS = [
-    '/', '/index.html', '/?token', '/?token=', '/?token=x', '/?token=%00', '/?token=%FF',
-    f'/?token={SECRET[:-1]}', f'/?token={SECRET}x', f'/?token={SECRET.upper()}',
-    f'/?Token={SECRET}', f'/?token%20={SECRET}', f'/?token=%20{SECRET}', f'/?token[]={SECRET}',
-    f'/#?token={SECRET}', f'/?a={SECRET}', f'/{SECRET}', f'/{SECRET}/', f'/token={SECRET}',
-    '//', '///?token=x', '/..', '/../', '/%2e%2e/', '/..%2f', '/..%5c..%5c', '/....//', '/%00',
-    '/.git/config', '/etc/passwd', '//etc/passwd', '/%2fetc%2fpasswd', '/static/../../site.py',
-    '/rosbots_window', '/' + 'A' * 22, '/' + 'A' * 22 + '/', '/' + 'a/' * 2000, '/' + 'x' * 9000,
-    'http://127.0.0.1/', f'http://evil.example/?token={SECRET[1:]}', '*', 'evil.example:80',
-    '/?token=x&token=y', '/?' + '&'.join(['token=x'] * 1000), '/?websocket=ws://evil.example',
-    '/;token=x', '/?token=\u00e9',
+    '/',
+    '/index.html',
+    '/?token',
+    '/?token=',
+    '/?token=x',
+    '/?token=%00',
+    '/?token=%FF',
+    f'/?token={SECRET[:-1]}',
+    f'/?token={SECRET}x',
+    f'/?token={SECRET.upper()}',
+    f'/?Token={SECRET}',
+    f'/?token%20={SECRET}',
+    f'/?token=%20{SECRET}',
+    f'/?token[]={SECRET}',
+    f'/#?token={SECRET}',
+    f'/?a={SECRET}',
+    f'/{SECRET}',
+    f'/{SECRET}/',
+    f'/token={SECRET}',
+    '//',
+    '///?token=x',
+    '/..',
+    '/../',
+    '/%2e%2e/',
+    '/..%2f',
+    '/..%5c..%5c',
+    '/....//',
+    '/%00',
+    '/.git/config',
+    '/etc/passwd',
+    '//etc/passwd',
+    '/%2fetc%2fpasswd',
+    '/static/../../site.py',
+    '/rosbots_window',
+    '/' + 'A' * 22,
+    '/' + 'A' * 22 + '/',
+    '/' + 'a/' * 2000,
+    '/' + 'x' * 9000,
+    'http://127.0.0.1/',
+    f'http://evil.example/?token={SECRET[1:]}',
+    '*',
+    'evil.example:80',
+    '/?token=x&token=y',
+    '/?' + '&'.join(['token=x'] * 1000),
+    '/?websocket=ws://evil.example',
+    '/;token=x',
+    '/?token=\u00e9',
 ]
 HEADERS = [
-    'Cookie: \r\n', 'Cookie: rosbots_window_PORT=\r\n', 'Cookie: rosbots_window_PORT=x\r\n',
+    'Cookie: \r\n',
+    'Cookie: rosbots_window_PORT=\r\n',
+    'Cookie: rosbots_window_PORT=x\r\n',
     f'Cookie: rosbots_window_PORT={SECRET}\r\n',  # it is for a path that nobody knows
-    f'Cookie: token={SECRET}\r\n', f'Cookie: rosbots_window_PORT="{SECRET}"\r\n',
-    f'Authorization: Bearer {SECRET}\r\n', f'Authorization: token {SECRET}\r\n',
-    f'X-Token: {SECRET}\r\n', f'Referer: http://127.0.0.1:PORT/?token={SECRET}\r\n',
-    'Origin: null\r\n', 'Origin: http://evil.example\r\n', 'Origin: http://127.0.0.1:1\r\n',
-    'Origin: http://127.0.0.1:PORT.evil.example\r\n', 'Origin: file://\r\n',
-    'Origin: http://[\r\n', 'X-Forwarded-For: 127.0.0.1\r\n', 'X-Forwarded-Host: localhost\r\n',
-    'X-Original-URL: /?token=x\r\n', f'X-Rewrite-URL: /?token={SECRET}\r\n',
-    'Transfer-Encoding: chunked\r\n', 'Content-Length: 5\r\n', 'Cookie: a[]=1; =;;\r\n',
-    'Cookie: ' + 'a=b; ' * 1500 + '\r\n', 'A: b\r\n' * 200, 'X: ' + 'y' * 9000 + '\r\n',
-    ' folded: x\r\n', 'no colon\r\n', 'Host: evil.example\r\n',
+    f'Cookie: token={SECRET}\r\n',
+    f'Cookie: rosbots_window_PORT="{SECRET}"\r\n',
+    f'Authorization: Bearer {SECRET}\r\n',
+    f'Authorization: token {SECRET}\r\n',
+    f'X-Token: {SECRET}\r\n',
+    f'Referer: http://127.0.0.1:PORT/?token={SECRET}\r\n',
+    'Origin: null\r\n',
+    'Origin: http://evil.example\r\n',
+    'Origin: http://127.0.0.1:1\r\n',
+    'Origin: http://127.0.0.1:PORT.evil.example\r\n',
+    'Origin: file://\r\n',
+    'Origin: http://[\r\n',
+    'X-Forwarded-For: 127.0.0.1\r\n',
+    'X-Forwarded-Host: localhost\r\n',
+    'X-Original-URL: /?token=x\r\n',
+    f'X-Rewrite-URL: /?token={SECRET}\r\n',
+    'Transfer-Encoding: chunked\r\n',
+    'Content-Length: 5\r\n',
+    'Cookie: a[]=1; =;;\r\n',
+    'Cookie: ' + 'a=b; ' * 1500 + '\r\n',
+    'A: b\r\n' * 200,
+    'X: ' + 'y' * 9000 + '\r\n',
+    ' folded: x\r\n',
+    'no colon\r\n',
+    'Host: evil.example\r\n',
 ]
 METHODS = ['POST', 'PUT', 'DELETE', 'OPTIONS', 'HEAD', 'TRACE', 'CONNECT', 'PATCH', 'get', 'X' * 99]
 
@@ -129,17 +189,39 @@ def test_no_other_method_leads_in(site, method):
     assert b'<html' not in said and b'HTTP/1.1 101' not in said
 
 
-@pytest.mark.parametrize('raw', [
-    '', '\r\n', '\0' * 100, 'GET', 'GET / HTTP/1.1', 'GET / HTTP/1.0\r\n\r\n', 'GET /\r\n\r\n',
-    'GET / HTTP/2.0\r\nHost: a\r\n\r\n', '\x16\x03\x01\x02\x00\x01', 'PRI * HTTP/2.0\r\n\r\nSM',
-    'GET  /  HTTP/1.1\r\n\r\n', 'GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n', 'x' * 100_000,
-])
+@pytest.mark.parametrize(
+    'raw',
+    [
+        '',
+        '\r\n',
+        '\0' * 100,
+        'GET',
+        'GET / HTTP/1.1',
+        'GET / HTTP/1.0\r\n\r\n',
+        'GET /\r\n\r\n',
+        'GET / HTTP/2.0\r\nHost: a\r\n\r\n',
+        '\x16\x03\x01\x02\x00\x01',
+        'PRI * HTTP/2.0\r\n\r\nSM',
+        'GET  /  HTTP/1.1\r\n\r\n',
+        'GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n',
+        'x' * 100_000,
+    ],
+)
 def test_what_is_no_request_leads_nowhere(site, raw):
     outside(answer(site, raw))
 
 
-@pytest.mark.parametrize('origin', ['http://evil.example', 'null', 'http://127.0.0.1', 'file://',
-                                    'https://127.0.0.1:PORT.evil.example', 'chrome-extension://x'])
+@pytest.mark.parametrize(
+    'origin',
+    [
+        'http://evil.example',
+        'null',
+        'http://127.0.0.1',
+        'file://',
+        'https://127.0.0.1:PORT.evil.example',
+        'chrome-extension://x',
+    ],
+)
 def test_a_page_of_others_does_not_get_in_with_the_token(site, origin):
     outside(answer(site, request(f'/?token={SECRET}', f'{SOCKET}Origin: {origin}\r\n')))
 
@@ -157,51 +239,88 @@ def outside(said):
 
 
 MALFORMED = {
-    'text': 'text', 'empty': b'', 'no msgpack': b'\xc1', 'a number': msgspec.msgpack.encode(1),
-    'a list': msgspec.msgpack.encode([1]), 'no type': msgspec.msgpack.encode({}),
-    'deep': b'\x91' * 100_000, 'cut off': msgspec.msgpack.encode(CAMERA)[:-3],
-    **{name: msgspec.msgpack.encode(message) for name, message in {
-        'unknown type': {'type': 'Nothing'},
-        'class of python': {'type': 'object'},
-        'base class': {'type': 'Message'},
-        'share': {'type': 'ShareUrlRequest'},
-        'script': {'type': 'RunJavascriptMessage', 'source': 'alert(1)'},
-        'notification': {'type': 'NotificationShowMessage', 'uuid': 'x', 'props': {}},
-        'theme': {'type': 'ThemeConfigurationMessage'},
-        'remove': {'type': 'RemoveSceneNodeMessage', 'name': '/models'},
-        'remove control': {'type': 'GuiRemoveMessage', 'uuid': 'x'},
-        'background': {'type': 'BackgroundImageMessage'},
-        'storage': {'type': 'LocalStorageGetItemResponseMessage', 'value': 'x', 'error': None,
-                    'request_uuid': 'x'},
-        'form': {'type': 'GuiFormDirtyMessage', 'uuid': 'x'},
-        'camera without a field': {name: value for name, value in CAMERA.items()
-                                   if name != 'fov'},
-        'camera with another field': {**CAMERA, 'client': 1},
-        'camera of text': {**CAMERA, 'position': 'abc'},
-        'camera of two numbers': {**CAMERA, 'position': [1.0, 2.0]},
-        'camera of a thousand': {**CAMERA, 'wxyz': [1.0] * 1000},
-        'camera of nothing': {**CAMERA, 'look_at': None},
-        'camera in a camera': {**CAMERA, 'look_at': [CAMERA] * 3},
-        'width of text': {**CAMERA, 'image_width': '100'},
-        'click without a ray': {'type': 'SceneNodeClickMessage', 'name': '/x'},
-        'long name': {'type': 'TransformControlsDragStartMessage', 'name': 'x' * 5000,
-                      'owner': ''},
-        'large message': {'type': 'GuiUpdateMessage', 'uuid': 'x',
-                          'updates': {'value': 'x' * 2_000_000}},
-        'other properties': {'type': 'GuiUpdateMessage', 'uuid': 'x',
-                             'updates': {'removed': True}},
-        'callbacks': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {'update_cb': []}},
-        'no property': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {}},
-        'two properties': {'type': 'GuiUpdateMessage', 'uuid': 'x',
-                           'updates': {'value': 1, 'sync_cb': None}},
-        'picture that is none': {'type': 'GetRenderResponseMessage', 'payload': b'GIF89a',
-                                 'render_uuid': 'x'},
-        'picture of text': {'type': 'GetRenderResponseMessage', 'payload': 'x',
-                            'render_uuid': 'x'},
-        'file for no button': {'type': 'FileTransferStartUpload', 'source_component_uuid': 'x',
-                               'transfer_uuid': 'x', 'filename': 'x', 'mime_type': '',
-                               'part_count': 1, 'size_bytes': 1},
-    }.items()},
+    'text': 'text',
+    'empty': b'',
+    'no msgpack': b'\xc1',
+    'a number': msgspec.msgpack.encode(1),
+    'a list': msgspec.msgpack.encode([1]),
+    'no type': msgspec.msgpack.encode({}),
+    'deep': b'\x91' * 100_000,
+    'cut off': msgspec.msgpack.encode(CAMERA)[:-3],
+    **{
+        name: msgspec.msgpack.encode(message)
+        for name, message in {
+            'unknown type': {'type': 'Nothing'},
+            'class of python': {'type': 'object'},
+            'base class': {'type': 'Message'},
+            'share': {'type': 'ShareUrlRequest'},
+            'script': {'type': 'RunJavascriptMessage', 'source': 'alert(1)'},
+            'notification': {'type': 'NotificationShowMessage', 'uuid': 'x', 'props': {}},
+            'theme': {'type': 'ThemeConfigurationMessage'},
+            'remove': {'type': 'RemoveSceneNodeMessage', 'name': '/models'},
+            'remove control': {'type': 'GuiRemoveMessage', 'uuid': 'x'},
+            'background': {'type': 'BackgroundImageMessage'},
+            'storage': {
+                'type': 'LocalStorageGetItemResponseMessage',
+                'value': 'x',
+                'error': None,
+                'request_uuid': 'x',
+            },
+            'form': {'type': 'GuiFormDirtyMessage', 'uuid': 'x'},
+            'camera without a field': {
+                name: value for name, value in CAMERA.items() if name != 'fov'
+            },
+            'camera with another field': {**CAMERA, 'client': 1},
+            'camera of text': {**CAMERA, 'position': 'abc'},
+            'camera of two numbers': {**CAMERA, 'position': [1.0, 2.0]},
+            'camera of a thousand': {**CAMERA, 'wxyz': [1.0] * 1000},
+            'camera of nothing': {**CAMERA, 'look_at': None},
+            'camera in a camera': {**CAMERA, 'look_at': [CAMERA] * 3},
+            'width of text': {**CAMERA, 'image_width': '100'},
+            'click without a ray': {'type': 'SceneNodeClickMessage', 'name': '/x'},
+            'long name': {
+                'type': 'TransformControlsDragStartMessage',
+                'name': 'x' * 5000,
+                'owner': '',
+            },
+            'large message': {
+                'type': 'GuiUpdateMessage',
+                'uuid': 'x',
+                'updates': {'value': 'x' * 2_000_000},
+            },
+            'other properties': {
+                'type': 'GuiUpdateMessage',
+                'uuid': 'x',
+                'updates': {'removed': True},
+            },
+            'callbacks': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {'update_cb': []}},
+            'no property': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {}},
+            'two properties': {
+                'type': 'GuiUpdateMessage',
+                'uuid': 'x',
+                'updates': {'value': 1, 'sync_cb': None},
+            },
+            'picture that is none': {
+                'type': 'GetRenderResponseMessage',
+                'payload': b'GIF89a',
+                'render_uuid': 'x',
+            },
+            'picture of text': {
+                'type': 'GetRenderResponseMessage',
+                'payload': 'x',
+                'render_uuid': 'x',
+            },
+            'file for no button': {
+                'type': 'FileTransferStartUpload',
+                'source_component_uuid': 'x',
+                'transfer_uuid': 'x',
+                'filename': 'x',
+                'mime_type': '',
+                'part_count': 1,
+                'size_bytes': 1,
+            },
+        }.items()
+    },
 }
 
 
@@ -226,9 +345,17 @@ CAMERAS = [
     *[{'wxyz': [number, 0.0, 0.0, 0.0]} for number in BAD],
     *[{'up_direction': [number, 0.0, 0.0]} for number in BAD],
     *[{name: number} for number in BAD for name in ('fov', 'near', 'far')],
-    {'wxyz': [0.0] * 4}, {'up_direction': [0.0] * 3}, {'look_at': CAMERA['position']},
-    {'fov': 0.0}, {'fov': -1.0}, {'fov': 4.0}, {'near': 0.0}, {'far': 0.001},
-    {'image_height': 0}, {'image_width': -1}, {'image_width': 100_000},
+    {'wxyz': [0.0] * 4},
+    {'up_direction': [0.0] * 3},
+    {'look_at': CAMERA['position']},
+    {'fov': 0.0},
+    {'fov': -1.0},
+    {'fov': 4.0},
+    {'near': 0.0},
+    {'far': 0.001},
+    {'image_height': 0},
+    {'image_width': -1},
+    {'image_width': 100_000},
     {'image_height': 2**63 - 1},
 ]
 
@@ -250,20 +377,35 @@ def test_of_many_refusals_the_first_is_told_and_the_number_of_others(browser):
 
     def counted():
         notes = browser.notes()
-        return (sum('of this browser' in note for note in notes)
-                + sum(int(count[1]) for note in notes if (count := told.fullmatch(note))))
+        return sum('of this browser' in note for note in notes) + sum(
+            int(count[1]) for note in notes if (count := told.fullmatch(note))
+        )
 
     browser.wait_until(lambda: counted() == 50)
     assert any(map(told.fullmatch, browser.notes()))
 
 
 VALUES = [
-    ('Steps', math.nan), ('Steps', math.inf), ('Steps', 0), ('Steps', -5), ('Steps', 10**9),
-    ('Size [m]', [math.nan, 1.0, 1.0]), ('Size [m]', [1.0, math.inf, 1.0]),
-    ('Shape mass [kg]', math.nan), ('Force [N]', [0.0, 0.0, math.inf]), ('Duration [s]', -1.0),
-    ('Duration [s]', math.nan), ('Speed', '100x'), ('Kind', 'sphere; rm'), ('Find', 'x' * 1001),
-    ('Curve', 'x' * 1001), ('Force per metre [N]', 0.0), ('Visuals', ''),
-    ('Model path', '../../etc/passwd'), ('Parameter', '/secret'), ('Light', '__proto__'),
+    ('Steps', math.nan),
+    ('Steps', math.inf),
+    ('Steps', 0),
+    ('Steps', -5),
+    ('Steps', 10**9),
+    ('Size [m]', [math.nan, 1.0, 1.0]),
+    ('Size [m]', [1.0, math.inf, 1.0]),
+    ('Shape mass [kg]', math.nan),
+    ('Force [N]', [0.0, 0.0, math.inf]),
+    ('Duration [s]', -1.0),
+    ('Duration [s]', math.nan),
+    ('Speed', '100x'),
+    ('Kind', 'sphere; rm'),
+    ('Find', 'x' * 1001),
+    ('Curve', 'x' * 1001),
+    ('Force per metre [N]', 0.0),
+    ('Visuals', ''),
+    ('Model path', '../../etc/passwd'),
+    ('Parameter', '/secret'),
+    ('Light', '__proto__'),
 ]
 
 
@@ -275,12 +417,28 @@ def test_a_value_that_a_control_cannot_have_is_refused_in_a_sentence(browser, la
     assert browser.value(label) == before
 
 
-@pytest.mark.parametrize(('label', 'value'), [
-    ('Steps', 'many'), ('Steps', None), ('Steps', True), ('Steps', [1]), ('Steps', {}),
-    ('Size [m]', 1.0), ('Size [m]', [1.0, 1.0]), ('Size [m]', ['a', 'b', 'c']), ('Static', 'yes'),
-    ('Find', 5), ('Find', b'x'), (UPLOAD, True), (UPLOAD, {'name': 'x', 'content': b''}),
-    ('Colour', [1]), ('Speed', 3), ('Pause', 'x'),
-], ids=str)
+@pytest.mark.parametrize(
+    ('label', 'value'),
+    [
+        ('Steps', 'many'),
+        ('Steps', None),
+        ('Steps', True),
+        ('Steps', [1]),
+        ('Steps', {}),
+        ('Size [m]', 1.0),
+        ('Size [m]', [1.0, 1.0]),
+        ('Size [m]', ['a', 'b', 'c']),
+        ('Static', 'yes'),
+        ('Find', 5),
+        ('Find', b'x'),
+        (UPLOAD, True),
+        (UPLOAD, {'name': 'x', 'content': b''}),
+        ('Colour', [1]),
+        ('Speed', 3),
+        ('Pause', 'x'),
+    ],
+    ids=str,
+)
 def test_a_value_of_another_type_ends_the_connection(browser, label, value):
     browser.choose(label, value)
     with pytest.raises(ConnectionClosed):
@@ -289,15 +447,31 @@ def test_a_value_of_another_type_ends_the_connection(browser, label, value):
 
 def start(browser, number, size=1000, count=2, **more):
     """Begin a file."""
-    browser.send({'type': 'FileTransferStartUpload', 'filename': 'x', 'mime_type': '',
-                  'source_component_uuid': browser.control(UPLOAD), 'transfer_uuid': str(number),
-                  'part_count': count, 'size_bytes': size, **more})
+    browser.send(
+        {
+            'type': 'FileTransferStartUpload',
+            'filename': 'x',
+            'mime_type': '',
+            'source_component_uuid': browser.control(UPLOAD),
+            'transfer_uuid': str(number),
+            'part_count': count,
+            'size_bytes': size,
+            **more,
+        }
+    )
 
 
 def part(browser, number, index=0, content=b'x'):
     """Send a part of it."""
-    browser.send({'type': 'FileTransferPart', 'source_component_uuid': browser.control(UPLOAD),
-                  'transfer_uuid': str(number), 'part_index': index, 'content': content})
+    browser.send(
+        {
+            'type': 'FileTransferPart',
+            'source_component_uuid': browser.control(UPLOAD),
+            'transfer_uuid': str(number),
+            'part_index': index,
+            'content': content,
+        }
+    )
 
 
 def test_unfinished_files_are_few_and_go_with_their_browser(browser, site):
@@ -314,8 +488,11 @@ def test_unfinished_files_are_few_and_go_with_their_browser(browser, site):
 def test_a_file_of_impossible_size_is_not_begun(browser, site, count, size):
     start(browser, 1, size, count)
     with suppress(ConnectionClosed):
-        browser.wait_until(lambda: any("'x' has more than" in note or 'of this browser' in note
-                                       for note in browser.notes()))
+        browser.wait_until(
+            lambda: any(
+                "'x' has more than" in note or 'of this browser' in note for note in browser.notes()
+            )
+        )
     assert len(site._gate._uploads) == 0
 
 
@@ -416,8 +593,13 @@ def test_what_is_done_in_the_first_moment_of_a_connection_is_not_lost(browser, s
     released = threading.Event()
     with Reconnected(site, browser) as early:
         early.upload(UPLOAD, 'early', b'x')
-        early.send({'type': 'GuiUpdateMessage', 'uuid': browser.control('Speed'),
-                    'updates': {'value': '10x'}})
+        early.send(
+            {
+                'type': 'GuiUpdateMessage',
+                'uuid': browser.control('Speed'),
+                'updates': {'value': '10x'},
+            }
+        )
         # The server reads all of it at once.
         site._websock_server._background_event_loop.call_soon_threadsafe(released.wait)
         early.let()

@@ -90,8 +90,11 @@ def test_a_recording_plays_the_scene_without_a_server(browser, simulator):
     browser.click('Stop the recording')
     recorded = scene_of(download(browser, 'recording.html').decode())
     assert recorded['durationSeconds'] == 1.5
-    places = [(moment, message['position'][0]) for moment, message in recorded['messages']
-              if message['type'] == 'SetPositionMessage' and message['name'] == '/models/a/link']
+    places = [
+        (moment, message['position'][0])
+        for moment, message in recorded['messages']
+        if message['type'] == 'SetPositionMessage' and message['name'] == '/models/a/link'
+    ]
     assert places[-2:] == [(0.25, 0.25), (1.5, 1.5)]
 
 
@@ -116,10 +119,12 @@ def test_takes_end_with_their_browser(site, simulator, page):
             browser.wait_until(lambda: browser.control('Record a recording'))
             browser.click('Record a recording')
             browser.click('Record a video')
-            other.wait_until(lambda: other.control('Stop the recording')
-                             and other.control('Stop the video'))
-        other.wait_until(lambda: other.control('Record a recording')
-                         and other.control('Record a video'))
+            other.wait_until(
+                lambda: other.control('Stop the recording') and other.control('Stop the video')
+            )
+        other.wait_until(
+            lambda: other.control('Record a recording') and other.control('Record a video')
+        )
         wait_until(lambda: site._websock_server._record_handles == [])
         assert other.notes() == []
 
@@ -133,8 +138,9 @@ def test_two_clicks_at_once_begin_one_take_and_end_it(site):
         return begun[-1]
 
     button = TakeButton(site.gui, 'video', 'video.mp4', '', make, complaints.append)
-    clicks = [threading.Thread(target=button._click, args=(SimpleNamespace(client=1),))
-              for _ in range(2)]
+    clicks = [
+        threading.Thread(target=button._click, args=(SimpleNamespace(client=1),)) for _ in range(2)
+    ]
     for click in clicks:
         click.start()
     clicks[1].join(0.2)
@@ -157,4 +163,4 @@ def scene_of(page):
     content = base64.b64decode(re.search(r'__VISER_EMBED_DATA__="(.+?)"', page)[1])
     inner = zstandard.ZstdDecompressor().decompressobj().decompress(content[8:])
     length = int.from_bytes(inner[:8], 'little')
-    return msgspec.msgpack.decode(inner[8:8 + length])
+    return msgspec.msgpack.decode(inner[8 : 8 + length])

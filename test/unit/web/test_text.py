@@ -78,20 +78,36 @@ def test_long_text_is_cut_off():
 
 
 def test_names_of_strangers_are_offered_in_one_place():
-    offered = {path.name for path in FOLDER.glob('*.py')
-               if re.search(r'\w\.options = (?!{)', path.read_text(encoding='utf-8'))}
+    offered = {
+        path.name
+        for path in FOLDER.glob('*.py')
+        if re.search(r'\w\.options = (?!{)', path.read_text(encoding='utf-8'))
+    }
     assert offered == {'choice.py'}  # other lists are the page's own, and stay as they are
 
 
 def test_html_is_made_in_one_place_and_markdown_nowhere():
-    made = {path.name for path in FOLDER.glob('*.py')
-            if re.search(r'add_html\(|\.content = ', path.read_text(encoding='utf-8'))}
+    made = {
+        path.name
+        for path in FOLDER.glob('*.py')
+        if re.search(r'add_html\(|\.content = ', path.read_text(encoding='utf-8'))
+    }
     assert made == {
-        'text.py', 'inspector.py',  # what descriptions.py made
-        'bar.py', 'camera_keys.py', 'drive.py', 'layout.py',  # constants
-        'clock.py', 'keys.py', 'world_name.py'}  # texts by `markup` and `table`
+        'text.py',
+        'inspector.py',  # what descriptions.py made
+        'bar.py',
+        'camera_keys.py',
+        'drive.py',
+        'layout.py',  # constants
+        'clock.py',
+        'keys.py',
+        'world_name.py',
+    }  # texts by `markup` and `table`
     everything = '\n'.join(path.read_text(encoding='utf-8') for path in FOLDER.glob('*.py'))
-    assert not re.search(r'add_markdown|add_modal|add_label|run_javascript|add_plotly|'
-                         r'html\.escape|import escape', everything.replace(
-                             'return html.escape(plain(text, most))', '').replace(
-                                 'client.gui.add_modal(TITLE)', ''))  # a constant
+    assert not re.search(
+        r'add_markdown|add_modal|add_label|run_javascript|add_plotly|'
+        r'html\.escape|import escape',
+        everything.replace('return html.escape(plain(text, most))', '').replace(
+            'client.gui.add_modal(TITLE)', ''
+        ),
+    )  # a constant

@@ -29,9 +29,15 @@ def sensors():
 @pytest.fixture
 def models():
     models = Models()
-    models.apply(SceneChange(True, tuple(
-        ShownModel(name, (ShownLink(number, 'base', Pose((float(number), 0.0, 0.0))),))
-        for number, name in enumerate(('r1', 'r2'), 1))))
+    models.apply(
+        SceneChange(
+            True,
+            tuple(
+                ShownModel(name, (ShownLink(number, 'base', Pose((float(number), 0.0, 0.0))),))
+                for number, name in enumerate(('r1', 'r2'), 1)
+            ),
+        )
+    )
     return models
 
 
@@ -116,8 +122,9 @@ def test_boxes_stay_in_order_when_other_sensors_come_and_go(browser, sensors, pa
 def test_shapes_are_where_the_robot_is(browser, sensors, models):
     models.move(ShownMotion(0.0, 0.0, 0, False, {1: Pose((5.0, 0.0, 0.0))}))
     check(browser, sensors, SCAN)
-    sensors.readings[SCAN] = ShownReading('laser', points=POINTS, words='one ray',
-                                          lines=np.zeros((1, 2, 3), np.float32))
+    sensors.readings[SCAN] = ShownReading(
+        'laser', points=POINTS, words='one ray', lines=np.zeros((1, 2, 3), np.float32)
+    )
     frame = '/readings/\u2215scan'
     browser.wait_until(lambda: browser.nodes.get(frame, [0, 0])[1] == [5.0, 0.0, 0.5])
     browser.wait_until(lambda: {f'{frame}/points', f'{frame}/lines'} <= browser.nodes.keys())
@@ -132,8 +139,15 @@ def test_newer_shapes_take_the_place_of_older_ones(browser, sensors, site):
     name = '/readings/\u2215scan/points'
 
     def sent(kind, part=None):
-        return len([m for m in browser.messages if m['type'] == kind and m['name'] == name
-                    and (part is None or part in m['updates'])])
+        return len(
+            [
+                m
+                for m in browser.messages
+                if m['type'] == kind
+                and m['name'] == name
+                and (part is None or part in m['updates'])
+            ]
+        )
 
     sensors.readings[SCAN] = ShownReading('laser', points=POINTS)
     browser.wait_until(lambda: sent('PointCloudMessage') == 1)
@@ -148,8 +162,12 @@ def test_newer_shapes_take_the_place_of_older_ones(browser, sensors, site):
 def test_of_links_of_one_name_that_of_the_topics_robot_is_meant(browser, sensors):
     check(browser, sensors, EYE)
     sensors.readings[EYE] = ShownReading('eye', points=POINTS)
-    browser.wait_until(lambda: browser.nodes.get(
-        '/readings/\u2215r2\u2215eye\u2215image', [0, 0])[1] == [2.0, 0.0, 0.5])
+    browser.wait_until(
+        lambda: (
+            browser.nodes.get('/readings/\u2215r2\u2215eye\u2215image', [0, 0])[1]
+            == [2.0, 0.0, 0.5]
+        )
+    )
 
 
 def test_shapes_in_the_world_need_no_link(browser, sensors):
@@ -163,8 +181,13 @@ def test_a_frame_that_nobody_knows_is_told_of(browser, sensors):
     check(browser, sensors, SCAN)
     sensors.place = None
     sensors.readings[SCAN] = ShownReading('moon', points=POINTS, words='one ray')
-    browser.wait_until(lambda: any("one ray\nIt is not in the scene: TF does not connect its "
-                                   "frame 'moon' with a link." in text for text in browser.texts()))
+    browser.wait_until(
+        lambda: any(
+            'one ray\nIt is not in the scene: TF does not connect its '
+            "frame 'moon' with a link." in text
+            for text in browser.texts()
+        )
+    )
     assert '/readings/\u2215scan' not in browser.nodes
     sensors.place = ('base', Pose())  # TF was only late
     browser.wait_until(lambda: '/readings/\u2215scan' in browser.nodes)
@@ -174,11 +197,13 @@ def test_a_frame_that_nobody_knows_is_told_of(browser, sensors):
 def test_pictures_are_shown_below_their_box(browser, sensors):
     check(browser, sensors, EYE)
     sensors.readings[EYE] = ShownReading(picture=np.full((4, 6, 3), 10, np.uint8))
-    browser.wait_until(lambda: 'GuiImageMessage' in {
-        kind for kind, _ in browser.controls.values()})
+    browser.wait_until(lambda: 'GuiImageMessage' in {kind for kind, _ in browser.controls.values()})
     sensors.readings[EYE] = ShownReading(picture=np.full((4, 6, 3), 200, np.uint8))
-    browser.wait_until(lambda: any(m['type'] == 'GuiUpdateMessage' and '_data' in m['updates']
-                                   for m in browser.messages))
+    browser.wait_until(
+        lambda: any(
+            m['type'] == 'GuiUpdateMessage' and '_data' in m['updates'] for m in browser.messages
+        )
+    )
 
 
 def test_what_cannot_be_shown_is_told(browser, sensors):

@@ -9,15 +9,19 @@ from rosbots_description.web import tree
 
 def rows(browser):
     """Return the labels of the buttons in the tree, from the top."""
-    buttons = [props for kind, props in browser.controls.values() if kind == 'GuiButtonMessage'
-               and props['color'] in ('gray', 'orange') and props['visible']]
+    buttons = [
+        props
+        for kind, props in browser.controls.values()
+        if kind == 'GuiButtonMessage' and props['color'] in ('gray', 'orange') and props['visible']
+    ]
     return [props['label'] for props in sorted(buttons, key=lambda props: props['order'])]
 
 
 def robot(name, *links):
     (link,) = model(name, 1).links
-    return ShownModel(name, tuple(
-        type(link)(number, one, link.pose) for number, one in enumerate(links)))
+    return ShownModel(
+        name, tuple(type(link)(number, one, link.pose) for number, one in enumerate(links))
+    )
 
 
 def test_models_come_and_go_and_a_click_selects(browser, simulator, page):

@@ -46,8 +46,9 @@ def viewer(served):
         simulator.change(SceneChange(True, (model('box', 1), model('other', 2))))
         page.poll()
         page.selection.choose('box')
-        browser.wait_until(lambda: NODE in browser.nodes and browser.control(UPLOAD)
-                           and browser.control('Forward'))
+        browser.wait_until(
+            lambda: NODE in browser.nodes and browser.control(UPLOAD) and browser.control('Forward')
+        )
         browser.wait_until(lambda: LOOKS in browser.notes())  # as it came in
         browser.messages.clear()
         simulator.told.clear()
@@ -58,19 +59,49 @@ def viewer(served):
 
 # Everything that a page can send, but what is in OF_VIEWERS.
 ACTS = {
-    'GuiUpdateMessage': [lambda b, label=label: b.click(label) for label in (
-        'Pause', 'Step', 'Reset world', 'Reset time and world', 'Duplicate', 'Delete', 'Push',
-        'Set pose', 'Set velocity', 'Set friction', 'Insert shape', 'Insert light', 'World',
-        'Record a video', 'Record a recording', 'Release', 'Add curve', 'Insert model')],
+    'GuiUpdateMessage': [
+        lambda b, label=label: b.click(label)
+        for label in (
+            'Pause',
+            'Step',
+            'Reset world',
+            'Reset time and world',
+            'Duplicate',
+            'Delete',
+            'Push',
+            'Set pose',
+            'Set velocity',
+            'Set friction',
+            'Insert shape',
+            'Insert light',
+            'World',
+            'Record a video',
+            'Record a recording',
+            'Release',
+            'Add curve',
+            'Insert model',
+        )
+    ],
     'GuiButtonHoldMessage': [lambda b: b.hold('Forward')],
-    'CommandTriggerMessage': [lambda b, key=key: b.press(key) for key in (
-        'space', 'I', 'delete', 'escape', 'D')],
+    'CommandTriggerMessage': [
+        lambda b, key=key: b.press(key) for key in ('space', 'I', 'delete', 'escape', 'D')
+    ],
     'SceneNodeClickMessage': [lambda b: b.click_node('/models/other/link')],
-    'SceneNodeDragMessage': [lambda b: b.send({
-        'type': 'SceneNodeDragMessage', 'name': '/models/box', 'phase': 'start', 'owner': '',
-        'instance_index': None, 'button': 'left', 'modifier': None,
-        **dict.fromkeys(('start_position', 'end_position'), [0.0] * 3),
-        **dict.fromkeys(('start_screen_pos', 'end_screen_pos'), [0.5] * 2)})],
+    'SceneNodeDragMessage': [
+        lambda b: b.send(
+            {
+                'type': 'SceneNodeDragMessage',
+                'name': '/models/box',
+                'phase': 'start',
+                'owner': '',
+                'instance_index': None,
+                'button': 'left',
+                'modifier': None,
+                **dict.fromkeys(('start_position', 'end_position'), [0.0] * 3),
+                **dict.fromkeys(('start_screen_pos', 'end_screen_pos'), [0.5] * 2),
+            }
+        )
+    ],
     'ScenePointerMessage': [lambda b: b.click_ray([0.0, 0.0, 5.0], [0.0, 0.0, -1.0])],
     'TransformControlsDragStartMessage': [lambda b: b.grab(NODE)],
     'TransformControlsUpdateMessage': [lambda b: b.drag(NODE, [9.0, 0.0, 0.0])],
@@ -84,8 +115,9 @@ def test_each_kind_of_message_is_allowed_or_tried():
     assert set(KINDS) == set(ACTS) | OF_VIEWERS
 
 
-@pytest.mark.parametrize(('_kind', 'act'), EXPECTED,
-                         ids=[f'{kind}-{n}' for n, (kind, _) in enumerate(EXPECTED)])
+@pytest.mark.parametrize(
+    ('_kind', 'act'), EXPECTED, ids=[f'{kind}-{n}' for n, (kind, _) in enumerate(EXPECTED)]
+)
 def test_what_changes_anything_is_refused_with_one_notice(viewer, served, _kind, act):
     _, simulator, page = served
     act(viewer)
@@ -101,9 +133,12 @@ def test_what_changes_anything_is_refused_with_one_notice(viewer, served, _kind,
 def test_a_value_that_was_changed_is_shown_as_it_is_again(viewer):
     before = viewer.value('Speed')
     viewer.choose('Speed', '10x')
-    viewer.wait_until(lambda: any(
-        message['type'] == 'GuiUpdateMessage' and message['updates'] == {'value': before}
-        for message in viewer.messages))
+    viewer.wait_until(
+        lambda: any(
+            message['type'] == 'GuiUpdateMessage' and message['updates'] == {'value': before}
+            for message in viewer.messages
+        )
+    )
 
 
 def test_a_handle_that_was_dragged_is_shown_where_it_is_again(viewer):
@@ -115,13 +150,17 @@ def test_a_handle_that_was_dragged_is_shown_where_it_is_again(viewer):
 def test_the_own_camera_moves_by_hand_and_by_the_buttons_of_the_view(viewer, site):
     viewer.look_at([1.0, 2.0, 3.0])
     clients = site.get_clients().values()
-    viewer.wait_until(lambda: any(list(client.camera.look_at) == [1.0, 2.0, 3.0]
-                                  for client in clients))
+    viewer.wait_until(
+        lambda: any(list(client.camera.look_at) == [1.0, 2.0, 3.0] for client in clients)
+    )
     for act in (lambda: viewer.click('Top'), lambda: viewer.press('F')):
         viewer.messages.clear()
         act()
-        viewer.wait_until(lambda: any(message['type'] == 'SetCameraPositionMessage'
-                                      for message in viewer.messages))
+        viewer.wait_until(
+            lambda: any(
+                message['type'] == 'SetCameraPositionMessage' for message in viewer.messages
+            )
+        )
         assert viewer.notes() == []
 
 
@@ -144,9 +183,15 @@ def test_many_refusals_are_counted(viewer):
     for _ in range(50):
         viewer.click('Pause')
     told = re.compile(r'(\d+) more notices? (is|are) left out')
-    viewer.wait_until(lambda: sum(
-        int(match[1]) if (match := told.fullmatch(note)) else note == LOOKS
-        for note in viewer.notes()) == 50)
+    viewer.wait_until(
+        lambda: (
+            sum(
+                int(match[1]) if (match := told.fullmatch(note)) else note == LOOKS
+                for note in viewer.notes()
+            )
+            == 50
+        )
+    )
 
 
 def test_the_two_addresses_have_two_tokens_two_paths_and_two_cookies(site):
@@ -168,13 +213,21 @@ def site_passes(site):
     from rosbots_description.web.door import Pass
 
     port = site.get_port()
-    return (Pass(SECRET, True, f'rosbots_window_{port}'),
-            Pass(VIEWING, False, f'rosbots_viewing_{port}'))
+    return (
+        Pass(SECRET, True, f'rosbots_window_{port}'),
+        Pass(VIEWING, False, f'rosbots_viewing_{port}'),
+    )
 
 
-@pytest.mark.parametrize('cookie', [
-    'rosbots_window_PORT={viewing}', 'rosbots_viewing_PORT={secret}', 'may_control=True',
-    'rosbots_window_PORT=; rosbots_viewing_PORT='])
+@pytest.mark.parametrize(
+    'cookie',
+    [
+        'rosbots_window_PORT={viewing}',
+        'rosbots_viewing_PORT={secret}',
+        'may_control=True',
+        'rosbots_window_PORT=; rosbots_viewing_PORT=',
+    ],
+)
 @pytest.mark.parametrize('inside', [0, 1])
 def test_no_cookie_of_one_address_opens_the_other(site, cookie, inside):
     port = site.get_port()
@@ -187,8 +240,11 @@ def test_no_cookie_of_one_address_opens_the_other(site, cookie, inside):
 def test_the_token_for_viewing_in_any_place_gives_no_control(site):
     root = site.address.partition('?')[0]
     control, _ = site_passes(site)
-    for address in (f'{root}{control.path}?token={VIEWING}', f'{root}?a=b&token={VIEWING}',
-                    f'{root}?token=x&token={VIEWING}&may_control=1'):
+    for address in (
+        f'{root}{control.path}?token={VIEWING}',
+        f'{root}?a=b&token={VIEWING}',
+        f'{root}?token=x&token={VIEWING}&may_control=1',
+    ):
         with Browser(address) as browser:
             browser.wait_until(lambda: LOOKS in browser.notes())
 

@@ -16,12 +16,15 @@ from rosbots_description.web.ground import CLEARANCE
 @pytest.fixture
 def looking(browser, simulator, page):
     """A browser that looks at boxes of 1 m from above."""
-    simulator.change(SceneChange(True, (
-        model('a', 1), model('b', 2), model('ground', 3, Plane()))))
+    simulator.change(SceneChange(True, (model('a', 1), model('b', 2), model('ground', 3, Plane()))))
     simulator.motion(clock(_1=Pose((0.0, 0.0, 0.0)), _2=Pose((10.0, 0.0, 0.0))))
     browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
-    browser.wait_until(lambda: '/models/b/link' in browser.nodes
-                       and browser.nodes['/models/b/link'][1] == [10.0, 0.0, 0.0])
+    browser.wait_until(
+        lambda: (
+            '/models/b/link' in browser.nodes
+            and browser.nodes['/models/b/link'][1] == [10.0, 0.0, 0.0]
+        )
+    )
     browser.wait_until(lambda: page._ground._expected)
     catch_up(browser, page, 'told')
     report(browser, *told(browser))
@@ -44,10 +47,17 @@ def catch_up(browser, page, word):
 
 def told(browser):
     """Return eye and target that the page has told a browser last."""
-    return tuple(next(np.array(message[key]) for message in reversed(browser.messages)
-                      if message['type'] == kind)
-                 for key, kind in (('position', 'SetCameraPositionMessage'),
-                                   ('look_at', 'SetCameraLookAtMessage')))
+    return tuple(
+        next(
+            np.array(message[key])
+            for message in reversed(browser.messages)
+            if message['type'] == kind
+        )
+        for key, kind in (
+            ('position', 'SetCameraPositionMessage'),
+            ('look_at', 'SetCameraLookAtMessage'),
+        )
+    )
 
 
 def turned(browser, page, act):
@@ -77,8 +87,12 @@ def test_a_view_from_the_front_is_ahead(looking, page):
 def test_what_is_selected_is_gone_to_from_where_one_is(looking, page):
     page.selection.choose('b')
     looking.send(CAMERA | {'position': [0.0, -20.0, 2.0], 'look_at': [0.0, 0.0, 2.0]})
-    looking.wait_until(lambda: tuple(
-        next(iter(page._site.get_clients().values())).camera.position) == (0.0, -20.0, 2.0))
+    looking.wait_until(
+        lambda: (
+            tuple(next(iter(page._site.get_clients().values())).camera.position)
+            == (0.0, -20.0, 2.0)
+        )
+    )
     eye, target = turned(looking, page, lambda: looking.press('G'))
     assert target[:2] == pytest.approx([10.0, 0.0], abs=0.05)
     assert (eye - target)[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-6)
@@ -119,15 +133,21 @@ def test_a_double_click_goes_to_the_model_and_keeps_it_selected(looking, page, m
 
 def test_a_camera_below_the_ground_is_lifted_above_it(looking, page):
     ground = 1.0  # [m] height of the fake's
-    eye, target = turned(looking, page, lambda: looking.send(
-        CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [1.0, 0.0, 0.0]}))
+    eye, target = turned(
+        looking,
+        page,
+        lambda: looking.send(CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [1.0, 0.0, 0.0]}),
+    )
     assert eye == pytest.approx([0.0, -20.0, ground + CLEARANCE])
     assert target == pytest.approx([1.0, 0.0, 0.0])
 
 
 def test_a_camera_that_looks_straight_up_from_below_looks_down_from_above(looking, page):
-    eye, target = turned(looking, page, lambda: looking.send(
-        CAMERA | {'position': [0.0, 0.0, -3.0], 'look_at': [0.0, 0.0, 0.0]}))
+    eye, target = turned(
+        looking,
+        page,
+        lambda: looking.send(CAMERA | {'position': [0.0, 0.0, -3.0], 'look_at': [0.0, 0.0, 0.0]}),
+    )
     assert eye[2] > target[2]
 
 
@@ -135,8 +155,9 @@ def test_without_a_ground_a_camera_may_be_anywhere(looking, page, simulator):
     simulator.change(SceneChange(removed=('ground',)))
     looking.messages.clear()
     looking.send(CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [0.0, 0.0, 0.0]})
-    looking.wait_until(lambda: next(iter(
-        page._site.get_clients().values())).camera.position[2] == -3.0)
+    looking.wait_until(
+        lambda: next(iter(page._site.get_clients().values())).camera.position[2] == -3.0
+    )
     catch_up(looking, page, 'below')
     assert not [m for m in looking.messages if m['type'] == 'SetCameraPositionMessage']
 

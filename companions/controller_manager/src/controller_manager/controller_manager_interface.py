@@ -14,7 +14,14 @@ from rosbots_simulator.ros_api.controller_programs.calls import (
 )
 
 __all__ = [
-    'list_controller_types', 'list_controllers', 'load_controller', 'reload_libraries',
-    'start_controller', 'start_controllers', 'start_stop_controllers', 'stop_controller',
-    'stop_controllers', 'unload_controller',
+    'list_controller_types',
+    'list_controllers',
+    'load_controller',
+    'reload_libraries',
+    'start_controller',
+    'start_controllers',
+    'start_stop_controllers',
+    'stop_controller',
+    'stop_controllers',
+    'unload_controller',
 ]

@@ -17,10 +17,15 @@ class Driving(SimEnv):
 
     def __init__(self, **options: Any) -> None:  # noqa: ANN401  those of SimEnv
         """Load world and robot; the arguments are those of `SimEnv`."""
-        super().__init__(**{
-            'arguments': {'laser': 'true'}, 'sensors': ['laser', 'odometry'],
-            'actions': {'differential_drive_controller': (0.8, 0.8)},
-            **self.settings, **options})
+        super().__init__(
+            **{
+                'arguments': {'laser': 'true'},
+                'sensors': ['laser', 'odometry'],
+                'actions': {'differential_drive_controller': (0.8, 0.8)},
+                **self.settings,
+                **options,
+            }
+        )
 
     def numbers(self, options: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
         """Return the options of `reset`, checked.
@@ -32,14 +37,17 @@ class Driving(SimEnv):
         for name, value in options.items():
             size = self.takes.get(name)
             if size is None:
-                raise ValueError(f"there is no option '{name}'; {type(self).__name__} takes "
-                                 f"{', '.join(self.takes)}")
+                raise ValueError(
+                    f"there is no option '{name}'; {type(self).__name__} takes "
+                    f'{", ".join(self.takes)}'
+                )
             try:
                 numbers = tuple(map(float, value))
             except (TypeError, ValueError):
                 numbers = ()
             if len(numbers) != size or not all(map(math.isfinite, numbers)):
-                raise ValueError(f"the option '{name}' takes {size} finite numbers; "
-                                 f'it got {value!r}')
+                raise ValueError(
+                    f"the option '{name}' takes {size} finite numbers; it got {value!r}"
+                )
             found[name] = numbers
         return found

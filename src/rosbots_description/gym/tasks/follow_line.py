@@ -26,8 +26,9 @@ class Line:
     def __init__(self, world: World) -> None:
         """Read the pieces: the boxes of the model 'line', which lie along their x axes."""
         visuals = world.model('line').link('link').spec.visuals
-        boxes = [(one.pose, one.geometry.size[0]) for one in visuals
-                 if isinstance(one.geometry, Box)]
+        boxes = [
+            (one.pose, one.geometry.size[0]) for one in visuals if isinstance(one.geometry, Box)
+        ]
         self._middles = np.array([pose.position[:2] for pose, _ in boxes])
         self._yaws = np.array([yaw_of(pose.orientation) for pose, _ in boxes])
         self._lengths = np.array([length for _, length in boxes])
@@ -65,8 +66,10 @@ class FollowLine(Driving):
     """
 
     settings: ClassVar[dict[str, Any]] = {
-        'world': 'line', 'arguments': {'camera': 'true', 'camera_pitch': '0.6'},
-        'sensors': ['camera1', 'odometry']}
+        'world': 'line',
+        'arguments': {'camera': 'true', 'camera_pitch': '0.6'},
+        'sensors': ['camera1', 'odometry'],
+    }
 
     def begin(self, options: Mapping[str, Any]) -> None:
         """Place the robot on the line."""

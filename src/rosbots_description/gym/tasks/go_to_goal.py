@@ -30,7 +30,9 @@ class GoToGoal(Driving):
     """
 
     settings: ClassVar[dict[str, Any]] = {
-        'world': 'room', 'more': {'goal': box(3, (1e3, 1.0, 1.0))}}
+        'world': 'room',
+        'more': {'goal': box(3, (1e3, 1.0, 1.0))},
+    }
 
     takes: ClassVar[dict[str, int]] = {'start': 3, 'goal': 2}
 
@@ -62,8 +64,7 @@ class GoToGoal(Driving):
 
     def truth(self) -> Info:
         """Add where the goal is, and whether it is reached."""
-        return {**super().truth(), 'goal': np.array(self.goal),
-                'is_success': self._left < REACHED}
+        return {**super().truth(), 'goal': np.array(self.goal), 'is_success': self._left < REACHED}
 
     def figures(self) -> Sequence[Figure]:
         """Return the goal, as large as it counts as reached."""

@@ -28,9 +28,12 @@ class Distances:
     def __init__(self, world: World) -> None:
         """Read the walls of the model 'maze', which lie along x and y."""
         link = world.model('maze').link('link')
-        self._walls = [(x, y, one.spec.geometry.size[0] / 2.0, one.spec.geometry.size[1] / 2.0)
-                       for one in link.collisions.values() if isinstance(one.spec.geometry, Box)
-                       for x, y, _ in [one.pose.position]]
+        self._walls = [
+            (x, y, one.spec.geometry.size[0] / 2.0, one.spec.geometry.size[1] / 2.0)
+            for one in link.collisions.values()
+            if isinstance(one.spec.geometry, Box)
+            for x, y, _ in [one.pose.position]
+        ]
         goal = _cell(*GOAL)
         self._ways: dict[Cell, float] = {goal: 0.0}
         queue = [(0.0, goal)]
@@ -44,8 +47,13 @@ class Distances:
     def of(self, x: float, y: float) -> float:
         """Return the way from a point to the goal [m]; inf where there is none."""
         cell = _cell(x, y)
-        return min((self._ways.get(one, math.inf) + math.dist((x, y), _middle(one))
-                    for one in (cell, *self._neighbours(cell))), default=math.inf)
+        return min(
+            (
+                self._ways.get(one, math.inf) + math.dist((x, y), _middle(one))
+                for one in (cell, *self._neighbours(cell))
+            ),
+            default=math.inf,
+        )
 
     def _neighbours(self, cell: Cell) -> Iterator[Cell]:
         column, row = cell
@@ -56,8 +64,10 @@ class Distances:
     def _is_walled(self, cell: Cell, near: Cell) -> bool:
         (ax, ay), (bx, by) = _middle(cell), _middle(near)
         x, y = (ax + bx) / 2.0, (ay + by) / 2.0
-        return any(abs(x - wall_x) <= half_x and abs(y - wall_y) <= half_y
-                   for wall_x, wall_y, half_x, half_y in self._walls)
+        return any(
+            abs(x - wall_x) <= half_x and abs(y - wall_y) <= half_y
+            for wall_x, wall_y, half_x, half_y in self._walls
+        )
 
 
 class Maze(Driving):

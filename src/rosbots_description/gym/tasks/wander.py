@@ -40,7 +40,7 @@ class Wander(Driving):
 
     def truth(self) -> Info:
         """Add the area that was visited [m^2]."""
-        return {**super().truth(), 'visited': len(self._visited) * CELL ** 2}
+        return {**super().truth(), 'visited': len(self._visited) * CELL**2}
 
     def figures(self) -> Sequence[Figure]:
         """Return the squares that were visited."""

@@ -78,9 +78,11 @@ class Adapter:
         invalid = {one.name for one in endpoints if one.name and not is_valid_name(one.name)}
         if invalid:
             logger.error(
-                "%s: not opened, since ROS has no such names: %s; use a-z, A-Z, 0-9 and _, "
+                '%s: not opened, since ROS has no such names: %s; use a-z, A-Z, 0-9 and _, '
                 "separated by slashes, in the tags that they are made of, and in the model's name",
-                where(self.plugin), ', '.join(map(repr, sorted(invalid))))
+                where(self.plugin),
+                ', '.join(map(repr, sorted(invalid))),
+            )
         return [one for one in endpoints if one.name not in invalid]
 
     def open(self) -> None:
@@ -132,7 +134,8 @@ class Adapter:
             return None
         watch = self._watch
         publisher = rospy.Publisher(
-            topic, message_class, subscriber_listener=watch, queue_size=queue_size, latch=latch)
+            topic, message_class, subscriber_listener=watch, queue_size=queue_size, latch=latch
+        )
         self.on_close(lambda: stop_publishing(publisher, watch))
         return publisher
 
@@ -150,15 +153,16 @@ class Adapter:
         """Call `close()` when the plugin is unloaded."""
         self._opened.append(close)
 
-    def _is_free(
-        self, topic: str, message_class: type[Message], types: Mapping[str, str]
-    ) -> bool:
+    def _is_free(self, topic: str, message_class: type[Message], types: Mapping[str, str]) -> bool:
         """Return whether `types` has no other type for the topic; rospy would mix the two."""
         there = types.get(rospy.resolve_name(topic), message_class._type)
         if there != message_class._type:
             logger.error(
                 '%s: the topic %s is not opened as %s: this node uses it as %s; rename it',
-                where(self.plugin), topic, message_class._type, there,
+                where(self.plugin),
+                topic,
+                message_class._type,
+                there,
             )
         return bool(there == message_class._type)
 

@@ -48,8 +48,10 @@ from .declarations import Offers, Publishes, Subscribes
 from .registry import connects
 
 QUEUE = MAX_BURST + 1  # a burst, and the picture before; Gazebo's is 2
-_FIELDS = [PointField(name, offset, PointField.FLOAT32, 1)
-           for name, offset in (('x', 0), ('y', 4), ('z', 8), ('rgb', 16))]
+_FIELDS = [
+    PointField(name, offset, PointField.FLOAT32, 1)
+    for name, offset in (('x', 0), ('y', 4), ('z', 8), ('rgb', 16))
+]
 
 
 def header(stamp_ns: int, frame: str) -> Header:
@@ -60,8 +62,14 @@ def header(stamp_ns: int, frame: str) -> Header:
 def image_message(image: Image) -> ImageMessage:
     """Return an image as a message."""
     return ImageMessage(
-        header(image.stamp_ns, image.frame), image.height, image.width, image.encoding, 0,
-        len(image.pixels) // image.height, image.pixels)
+        header(image.stamp_ns, image.frame),
+        image.height,
+        image.width,
+        image.encoding,
+        0,
+        len(image.pixels) // image.height,
+        image.pixels,
+    )
 
 
 def compressed_message(image: CompressedImage) -> CompressedMessage:
@@ -74,8 +82,16 @@ def cloud_message(cloud: Cloud) -> PointCloud2:
     height, width, floats = cloud.points.shape
     step = 4 * floats
     return PointCloud2(
-        header(cloud.stamp_ns, cloud.frame), height, width, _FIELDS, False, step, step * width,
-        cloud.points.tobytes(), cloud.is_dense)
+        header(cloud.stamp_ns, cloud.frame),
+        height,
+        width,
+        _FIELDS,
+        False,
+        step,
+        step * width,
+        cloud.points.tobytes(),
+        cloud.is_dense,
+    )
 
 
 def info_message(reading: StampedInfo) -> CameraInfoMessage:
@@ -83,21 +99,34 @@ def info_message(reading: StampedInfo) -> CameraInfoMessage:
     info = reading.info
     return CameraInfoMessage(
         header=header(reading.stamp_ns, info.frame),
-        height=info.height, width=info.width, distortion_model=info.model,
-        D=list(info.distortion), K=list(info.intrinsics), R=list(info.rectification),
-        P=list(info.projection), binning_x=info.binning[0], binning_y=info.binning[1],
-        roi=RegionOfInterest(*info.region))
+        height=info.height,
+        width=info.width,
+        distortion_model=info.model,
+        D=list(info.distortion),
+        K=list(info.intrinsics),
+        R=list(info.rectification),
+        P=list(info.projection),
+        binning_x=info.binning[0],
+        binning_y=info.binning[1],
+        roi=RegionOfInterest(*info.region),
+    )
 
 
 def read_info(message: CameraInfoMessage) -> CameraInfo:
     """Return the info of a message."""
     roi = message.roi
     return CameraInfo(
-        message.width, message.height, message.distortion_model, tuple(message.D),
-        tuple(message.K), tuple(message.R), tuple(message.P),
+        message.width,
+        message.height,
+        message.distortion_model,
+        tuple(message.D),
+        tuple(message.K),
+        tuple(message.R),
+        tuple(message.P),
         (message.binning_x, message.binning_y),
         (roi.x_offset, roi.y_offset, roi.height, roi.width, roi.do_rectify),
-        message.header.frame_id)
+        message.header.frame_id,
+    )
 
 
 def set_camera_info(channel: int) -> Callable[[Adapter, str], Callable[[], None]]:
@@ -140,8 +169,14 @@ def channel_topics(
     """
     return (
         Publishes(f'{side}image', image, ImageMessage, image_message, queue=QUEUE, latch=True),
-        Publishes(f'{side}compressed', f'{image}/compressed', CompressedMessage,
-                  compressed_message, queue=QUEUE, latch=True),
+        Publishes(
+            f'{side}compressed',
+            f'{image}/compressed',
+            CompressedMessage,
+            compressed_message,
+            queue=QUEUE,
+            latch=True,
+        ),
         Publishes(f'{side}camera_info', info, CameraInfoMessage, info_message, queue=QUEUE),
         Offers(f'{folder}/set_camera_info', set_camera_info(number)),
         Offers(folder, reconfigure),
@@ -152,18 +187,31 @@ _ONE = channel_topics('', '<imageTopicName>', '<cameraInfoTopicName>', '<cameraN
 _DEPTH = (
     *_ONE,
     Publishes('depth', '<depthImageTopicName>', ImageMessage, image_message, queue=QUEUE),
-    Publishes('depth_camera_info', '<depthImageCameraInfoTopicName>', CameraInfoMessage,
-              info_message, queue=QUEUE),
+    Publishes(
+        'depth_camera_info',
+        '<depthImageCameraInfoTopicName>',
+        CameraInfoMessage,
+        info_message,
+        queue=QUEUE,
+    ),
     Publishes('points', '<pointCloudTopicName>', PointCloud2, cloud_message, queue=QUEUE),
 )
 _SIDES = 'left', 'right'
 _BOTH = tuple(
-    declared for number, side in enumerate(_SIDES) for declared in channel_topics(
-        f'{side}_', f'<{side} imageTopicName>', f'<{side} cameraInfoTopicName>',
-        f'<cameraName>/{side}', number))
+    declared
+    for number, side in enumerate(_SIDES)
+    for declared in channel_topics(
+        f'{side}_',
+        f'<{side} imageTopicName>',
+        f'<{side} cameraInfoTopicName>',
+        f'<cameraName>/{side}',
+        number,
+    )
+)
 _TRIGGERS = tuple(
     Subscribes(f'<{side}triggerTopicName>', Empty, 'trigger', lambda _message: ())
-    for side in ('', *(f'{side} ' for side in _SIDES)))
+    for side in ('', *(f'{side} ' for side in _SIDES))
+)
 connects(CameraPlugin, *_ONE)
 connects(MultiCameraPlugin, *_BOTH)
 connects(TriggeredCameraPlugin, *_ONE, *_TRIGGERS[:1])

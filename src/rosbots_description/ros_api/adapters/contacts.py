@@ -20,19 +20,26 @@ from .registry import connects
 
 def contacts_message(touches: Sequence[ContactPair]) -> ContactsState:
     """Return the message of what was touched since the one before."""
-    return ContactsState(states=[_state(touch, f'{i}/{len(touches)}')
-                                 for i, touch in enumerate(touches)])
+    return ContactsState(
+        states=[_state(touch, f'{i}/{len(touches)}') for i, touch in enumerate(touches)]
+    )
 
 
 def _state(touch: ContactPair, place: str) -> ContactState:
     points = touch.points
-    info = (f'Debug:  i:({place})     my geom:{touch.first}   other geom:{touch.second}'
-            f'         time:{touch.time_ns / NANOSECONDS:.9f}\n')
+    info = (
+        f'Debug:  i:({place})     my geom:{touch.first}   other geom:{touch.second}'
+        f'         time:{touch.time_ns / NANOSECONDS:.9f}\n'
+    )
     return ContactState(
-        info, touch.first, touch.second,
+        info,
+        touch.first,
+        touch.second,
         [_wrench(point.force, point.torque) for point in points],
-        _wrench(reduce(add, (point.force for point in points)),
-                reduce(add, (point.torque for point in points))),
+        _wrench(
+            reduce(add, (point.force for point in points)),
+            reduce(add, (point.torque for point in points)),
+        ),
         [Vector3(*point.position) for point in points],
         [Vector3(*point.normal) for point in points],
         [point.depth for point in points],
@@ -43,5 +50,13 @@ def _wrench(force: Vector, torque: Vector) -> Wrench:
     return Wrench(Vector3(*force), Vector3(*torque))
 
 
-connects(BumperPlugin, Publishes('contacts', BumperPlugin.topic_names['contacts'], ContactsState,
-                                 convert=contacts_message, frame='<frameName>'))
+connects(
+    BumperPlugin,
+    Publishes(
+        'contacts',
+        BumperPlugin.topic_names['contacts'],
+        ContactsState,
+        convert=contacts_message,
+        frame='<frameName>',
+    ),
+)

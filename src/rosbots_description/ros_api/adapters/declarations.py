@@ -102,7 +102,8 @@ class PublishedTopic(Endpoint):
             self._pack = declared.pack(adapter)
         self._clock = adapter.server.world.clock
         self.publisher = adapter.advertise(
-            self.name, declared.message, declared.queue, declared.latch)
+            self.name, declared.message, declared.queue, declared.latch
+        )
         self.log(declared.log)
 
     @property
@@ -185,8 +186,9 @@ class SubscribedTopic(Endpoint):
         except ValueError as error:
             if time.monotonic() > self._last_complaint + COMPLAINT_PERIOD:
                 self._last_complaint = time.monotonic()
-                logger.error('%sdropped a command on %s with %s',
-                             plugin.log_prefix, self.text, error)
+                logger.error(
+                    '%sdropped a command on %s with %s', plugin.log_prefix, self.text, error
+                )
         else:
             self.adapter.server.loop.post(lambda: self._command(*arguments))
 
@@ -205,8 +207,11 @@ def finite(*fields: str) -> Callable[[Message], tuple[float, ...]]:
 
     def read(message: Message) -> tuple[float, ...]:
         numbers = tuple(get(message) for get in getters)
-        bad = [f'{field} {number}' for field, number in zip(fields, numbers, strict=True)
-               if not math.isfinite(number)]
+        bad = [
+            f'{field} {number}'
+            for field, number in zip(fields, numbers, strict=True)
+            if not math.isfinite(number)
+        ]
         if bad:
             raise ValueError(f'{" and ".join(bad)}; numbers must be finite')
         return numbers
@@ -242,7 +247,9 @@ class Offered(Endpoint):
         except rospy.ServiceException:
             logger.warning(
                 '%s: the services of %s are those of another plugin; names of its own, or a '
-                'robot_namespace, would give this one its own', where(self.adapter.plugin),
-                self.name)
+                'robot_namespace, would give this one its own',
+                where(self.adapter.plugin),
+                self.name,
+            )
         else:
             self.adapter.on_close(close)

@@ -107,9 +107,14 @@ class WheelFramesTopic(PublishedTopic):
     def is_wanted(self) -> bool:
         """Tell whether to publish the frames."""
         nodes = self.adapter.server.static_frames.nodes
-        return super().is_wanted() and not (nodes and any(
-            nodes.intersection(states.readers()) for states in self.adapter.endpoints
-            if isinstance(states, WheelStatesTopic)))
+        return super().is_wanted() and not (
+            nodes
+            and any(
+                nodes.intersection(states.readers())
+                for states in self.adapter.endpoints
+                if isinstance(states, WheelStatesTopic)
+            )
+        )
 
     def send(self, reading: object) -> None:
         """Publish a frame, unless such a node has subscribed since the readers were counted."""
@@ -118,17 +123,35 @@ class WheelFramesTopic(PublishedTopic):
 
 
 COMMAND, SIDEWAYS = (
-    Subscribes(DiffDrive.topic_names['command'], Twist, 'command', finite(*fields),
-               log_before='Try to subscribe to {}', log='Subscribe to {}')
+    Subscribes(
+        DiffDrive.topic_names['command'],
+        Twist,
+        'command',
+        finite(*fields),
+        log_before='Try to subscribe to {}',
+        log='Subscribe to {}',
+    )
     for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y'))
 )
-ODOMETRY = Publishes('odometry', DiffDrive.topic_names['odometry'], OdometryMessage,
-                     pack=odometry_pack, log='Advertise odom on {} ')
-TRANSFORM = Publishes('odometry_transform', '/tf', TFMessage, pack=RootedTransformPack, queue=100,
-                      always=True)
+ODOMETRY = Publishes(
+    'odometry',
+    DiffDrive.topic_names['odometry'],
+    OdometryMessage,
+    pack=odometry_pack,
+    log='Advertise odom on {} ',
+)
+TRANSFORM = Publishes(
+    'odometry_transform', '/tf', TFMessage, pack=RootedTransformPack, queue=100, always=True
+)
 WHEELS = (
-    WheelStates('joint_states', DiffDrive.topic_names['joint_states'], JointState,
-                pack=JointStatesPack, queue=1000, log='Advertise joint_states'),
+    WheelStates(
+        'joint_states',
+        DiffDrive.topic_names['joint_states'],
+        JointState,
+        pack=JointStatesPack,
+        queue=1000,
+        log='Advertise joint_states',
+    ),
     WheelFrames('wheel_transform', '/tf', TFMessage, pack=TransformPack, queue=100),
 )
 

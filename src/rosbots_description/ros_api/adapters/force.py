@@ -109,9 +109,7 @@ class FollowedFrame(Endpoint):
             server.loop.post(lambda: plugin.follow(pose))
 
 
-def pose_between(
-    frame: str, child: str, edges: Mapping[str, tuple[str, Pose]]
-) -> Pose | None:
+def pose_between(frame: str, child: str, edges: Mapping[str, tuple[str, Pose]]) -> Pose | None:
     """Return the pose of `child` in `frame`; None if no edges lead from one to the other."""
     (root, base), (other, pose) = (_from_root(name, edges) for name in (frame, child))
     return relative(pose, base) if root == other else None

@@ -46,9 +46,12 @@ def calibration(adapter: Adapter, name: str) -> Callable[[], None]:
 def fix_message(fix: Fix) -> NavSatFix:
     """Return the message of a position."""
     message = NavSatFix(
-        status=NavSatStatus(fix.status, fix.service), latitude=fix.latitude,
-        longitude=fix.longitude, altitude=fix.altitude,
-        position_covariance_type=NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN)
+        status=NavSatStatus(fix.status, fix.service),
+        latitude=fix.latitude,
+        longitude=fix.longitude,
+        altitude=fix.altitude,
+        position_covariance_type=NavSatFix.COVARIANCE_TYPE_DIAGONAL_KNOWN,
+    )
     message.position_covariance[::4] = fix.variances
     return message
 
@@ -62,10 +65,21 @@ IMU = Publishes('imu', LinkImu.topic_names['imu'], Imu, pack=imu_pack)
 
 connects(ImuSensorPlugin, IMU)
 connects(LinkImu, IMU, Offers('<serviceName>', calibration))
-connects(HectorImu, IMU, Publishes('bias', '<biasTopicName>', Imu, pack=imu_pack),
-         Offers('<serviceName>', calibration))
+connects(
+    HectorImu,
+    IMU,
+    Publishes('bias', '<biasTopicName>', Imu, pack=imu_pack),
+    Offers('<serviceName>', calibration),
+)
 connects(
     HectorGps,
     Publishes('fix', '<topicName>', NavSatFix, convert=fix_message, frame='<frameId>', queue=10),
-    Publishes('velocity', '<velocityTopicName>', Vector3Stamped, convert=velocity_message,
-              frame='<frameId>', queue=10))
+    Publishes(
+        'velocity',
+        '<velocityTopicName>',
+        Vector3Stamped,
+        convert=velocity_message,
+        frame='<frameId>',
+        queue=10,
+    ),
+)

@@ -16,7 +16,8 @@ def odometry_pack(adapter: Adapter) -> Pack:
     """Return what lays the odometry of a drive out."""
     plugin: Any = adapter.plugin  # one that has variances, as those have that give odometry out
     parent, child = (
-        adapter.frame(plugin.params.string(tag)) for tag in ('odometryFrame', 'robotBaseFrame'))
+        adapter.frame(plugin.params.string(tag)) for tag in ('odometryFrame', 'robotBaseFrame')
+    )
     return OdometryLayout(parent, child, plugin.pose_variances, plugin.twist_variances).pack
 
 
@@ -64,8 +65,13 @@ class RootedTransformPack(TransformPack):
             logger.debug(
                 '%sanother node publishes a static transform to %s from %s, so %s -> %s is '
                 'published instead of %s -> %s: a TF frame has one parent',
-                self.adapter.plugin.log_prefix, edge.child, moved.child, moved.parent, moved.child,
-                edge.parent, edge.child,
+                self.adapter.plugin.log_prefix,
+                edge.child,
+                moved.child,
+                moved.parent,
+                moved.child,
+                edge.parent,
+                edge.child,
             )
 
 

@@ -29,7 +29,14 @@ from .registry import connects
 _RING_FIELDS = [
     PointField(name, offset, PointField.UINT16 if name == 'ring' else PointField.FLOAT32, 1)
     for name, offset in (
-        ('x', 0), ('y', 4), ('z', 8), ('intensity', 12), ('ring', 16), ('time', 18))]
+        ('x', 0),
+        ('y', 4),
+        ('z', 8),
+        ('intensity', 12),
+        ('ring', 16),
+        ('time', 18),
+    )
+]
 
 
 def scan_pack(adapter: Adapter) -> Pack:
@@ -45,8 +52,13 @@ def scan_pack(adapter: Adapter) -> Pack:
 def range_message(distance: Distance) -> Range:
     """Return the message of a range."""
     kind = Range.INFRARED if distance.is_infrared else Range.ULTRASOUND
-    return Range(radiation_type=kind, field_of_view=distance.field_of_view,
-                 min_range=distance.range_min, max_range=distance.range_max, range=distance.range)
+    return Range(
+        radiation_type=kind,
+        field_of_view=distance.field_of_view,
+        min_range=distance.range_min,
+        max_range=distance.range_max,
+        range=distance.range,
+    )
 
 
 def points_pack(adapter: Adapter) -> Pack:
@@ -60,13 +72,25 @@ def ring_cloud_message(cloud: RingCloud) -> PointCloud2:
     height, width = cloud.points.shape
     step = cloud.points.itemsize
     return PointCloud2(
-        height=height, width=width, fields=_RING_FIELDS, point_step=step, row_step=step * width,
-        data=cloud.points.tobytes(), is_dense=cloud.is_dense)
+        height=height,
+        width=width,
+        fields=_RING_FIELDS,
+        point_step=step,
+        row_step=step * width,
+        data=cloud.points.tobytes(),
+        is_dense=cloud.is_dense,
+    )
 
 
 connects(LaserPlugin, Publishes('scan', LaserPlugin.topic_names['scan'], LaserScan, pack=scan_pack))
-connects(RangePlugin, Publishes(
-    'range', RangePlugin.topic_names['range'], Range, convert=range_message, frame='<frameName>'))
+connects(
+    RangePlugin,
+    Publishes(
+        'range', RangePlugin.topic_names['range'], Range, convert=range_message, frame='<frameName>'
+    ),
+)
 connects(BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, pack=points_pack))
-connects(VelodynePlugin, Publishes(
-    'cloud', '<topicName>', PointCloud2, convert=ring_cloud_message, frame='<frameName>'))
+connects(
+    VelodynePlugin,
+    Publishes('cloud', '<topicName>', PointCloud2, convert=ring_cloud_message, frame='<frameName>'),
+)

@@ -49,10 +49,23 @@ def read_trajectory(message: JointTrajectory) -> tuple[Any, ...]:
     return header.frame_id, header.stamp.to_nsec(), message.joint_names, points
 
 
-connects(P3D, Publishes('odometry', P3D.topic_names['odometry'], Odometry, pack=true_odometry_pack,
-                        always=True))
-connects(JointStatePublisher, Publishes(
-    'joint_states', JointStatePublisher.topic_names['joint_states'], JointState,
-    pack=JointStatesPack, queue=1000))
-connects(JointPoseTrajectory, Subscribes(
-    '<topicName>', JointTrajectory, 'play', read_trajectory, queue=100))
+connects(
+    P3D,
+    Publishes(
+        'odometry', P3D.topic_names['odometry'], Odometry, pack=true_odometry_pack, always=True
+    ),
+)
+connects(
+    JointStatePublisher,
+    Publishes(
+        'joint_states',
+        JointStatePublisher.topic_names['joint_states'],
+        JointState,
+        pack=JointStatesPack,
+        queue=1000,
+    ),
+)
+connects(
+    JointPoseTrajectory,
+    Subscribes('<topicName>', JointTrajectory, 'play', read_trajectory, queue=100),
+)

@@ -18,6 +18,13 @@ def wrench_message(reading: JointWrench) -> WrenchStamped:
     return WrenchStamped(wrench=Wrench(Vector3(*reading.force), Vector3(*reading.torque)))
 
 
-connects(JointWrenchPlugin, Publishes(
-    'wrench', JointWrenchPlugin.topic_names['wrench'], WrenchStamped, convert=wrench_message,
-    frame='<frame>'))
+connects(
+    JointWrenchPlugin,
+    Publishes(
+        'wrench',
+        JointWrenchPlugin.topic_names['wrench'],
+        WrenchStamped,
+        convert=wrench_message,
+        frame='<frame>',
+    ),
+)

@@ -23,8 +23,12 @@ _ANSWER = 60.0  # [s] wall time; a running simulator answers at once, on a busy 
 _SLOWEST = 0.1  # real-time factor below which the demo gives up
 
 
-def wait_until(condition: Callable[[], bool], timeout: float, what: str,
-               alive: Callable[[], bool] = lambda: True) -> None:
+def wait_until(
+    condition: Callable[[], bool],
+    timeout: float,
+    what: str,
+    alive: Callable[[], bool] = lambda: True,
+) -> None:
     """Wait for a condition.
 
     Args:
@@ -111,11 +115,15 @@ class DemoClient:
             TimeoutError: it does not in time.
         """
         self._odometry.clear()
-        wait_until(lambda: self._command.get_num_connections() > 0 and bool(self._odometry),
-                   _ANSWER, "the robot's plugin on /part2_cmr/cmd_vel and /odom")
+        wait_until(
+            lambda: self._command.get_num_connections() > 0 and bool(self._odometry),
+            _ANSWER,
+            "the robot's plugin on /part2_cmr/cmd_vel and /odom",
+        )
 
-    def drive(self, speed: float, turn_rate: float, duration: float) \
-            -> tuple[list[PlanarSample], list[PlanarSample]]:
+    def drive(
+        self, speed: float, turn_rate: float, duration: float
+    ) -> tuple[list[PlanarSample], list[PlanarSample]]:
         """Command a velocity and record the motion.
 
         Args:
@@ -178,5 +186,10 @@ def _offered(service: str) -> bool:
 
 def _sample(stamp: rospy.Time, pose: Pose) -> PlanarSample:
     q = pose.orientation
-    return PlanarSample(stamp.to_sec(), time.monotonic(), pose.position.x, pose.position.y,
-                        yaw_of((q.x, q.y, q.z, q.w)))
+    return PlanarSample(
+        stamp.to_sec(),
+        time.monotonic(),
+        pose.position.x,
+        pose.position.y,
+        yaw_of((q.x, q.y, q.z, q.w)),
+    )

@@ -4,7 +4,6 @@ Names, arguments, log lines and results are those of the module ``gazebo_ros.gaz
 from which existing scripts import these functions.
 """
 
-
 from __future__ import annotations
 
 import math
@@ -75,20 +74,38 @@ def _call(service: str, service_class: type[Any], **request: object) -> Message 
         return None
 
 
-def _spawn(service: str, *, model_name: str, model_xml: str, robot_namespace: str,
-           initial_pose: Pose, reference_frame: str) -> bool | None:
-    response = _call(service, SpawnModel, model_name=model_name, model_xml=model_xml,
-                     robot_namespace=robot_namespace, initial_pose=initial_pose,
-                     reference_frame=reference_frame)
+def _spawn(
+    service: str,
+    *,
+    model_name: str,
+    model_xml: str,
+    robot_namespace: str,
+    initial_pose: Pose,
+    reference_frame: str,
+) -> bool | None:
+    response = _call(
+        service,
+        SpawnModel,
+        model_name=model_name,
+        model_xml=model_xml,
+        robot_namespace=robot_namespace,
+        initial_pose=initial_pose,
+        reference_frame=reference_frame,
+    )
     if response is None:
         return None
     rospy.loginfo('Spawn status: %s', response.status_message)
     return bool(response.success)
 
 
-def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
-                           initial_pose: Pose, reference_frame: str,
-                           gazebo_namespace: str) -> bool | None:
+def spawn_sdf_model_client(
+    model_name: str,
+    model_xml: str,
+    robot_namespace: str,
+    initial_pose: Pose,
+    reference_frame: str,
+    gazebo_namespace: str,
+) -> bool | None:
     """Spawn a model given as SDF; wait for the simulator without a time limit.
 
     Args:
@@ -101,23 +118,42 @@ def spawn_sdf_model_client(model_name: str, model_xml: str, robot_namespace: str
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
     """
-    return _spawn(gazebo_namespace + '/spawn_sdf_model', model_name=model_name,
-                  model_xml=model_xml, robot_namespace=robot_namespace,
-                  initial_pose=initial_pose, reference_frame=reference_frame)
+    return _spawn(
+        gazebo_namespace + '/spawn_sdf_model',
+        model_name=model_name,
+        model_xml=model_xml,
+        robot_namespace=robot_namespace,
+        initial_pose=initial_pose,
+        reference_frame=reference_frame,
+    )
 
 
-def spawn_urdf_model_client(model_name: str, model_xml: str, robot_namespace: str,
-                            initial_pose: Pose, reference_frame: str,
-                            gazebo_namespace: str) -> bool | None:
+def spawn_urdf_model_client(
+    model_name: str,
+    model_xml: str,
+    robot_namespace: str,
+    initial_pose: Pose,
+    reference_frame: str,
+    gazebo_namespace: str,
+) -> bool | None:
     """Spawn a model given as URDF; otherwise like spawn_sdf_model_client."""
-    return _spawn(gazebo_namespace + '/spawn_urdf_model', model_name=model_name,
-                  model_xml=model_xml, robot_namespace=robot_namespace,
-                  initial_pose=initial_pose, reference_frame=reference_frame)
+    return _spawn(
+        gazebo_namespace + '/spawn_urdf_model',
+        model_name=model_name,
+        model_xml=model_xml,
+        robot_namespace=robot_namespace,
+        initial_pose=initial_pose,
+        reference_frame=reference_frame,
+    )
 
 
-def set_model_configuration_client(model_name: str, model_param_name: str,
-                                   joint_names: Sequence[str], joint_positions: Sequence[float],
-                                   gazebo_namespace: str) -> bool | None:
+def set_model_configuration_client(
+    model_name: str,
+    model_param_name: str,
+    joint_names: Sequence[str],
+    joint_positions: Sequence[float],
+    gazebo_namespace: str,
+) -> bool | None:
     """Set joint positions [rad or m] of a model; wait for the simulator without a time limit.
 
     Args:
@@ -127,9 +163,14 @@ def set_model_configuration_client(model_name: str, model_param_name: str,
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
     """
-    response = _call(gazebo_namespace + '/set_model_configuration', SetModelConfiguration,
-                     model_name=model_name, urdf_param_name=model_param_name,
-                     joint_names=list(joint_names), joint_positions=list(joint_positions))
+    response = _call(
+        gazebo_namespace + '/set_model_configuration',
+        SetModelConfiguration,
+        model_name=model_name,
+        urdf_param_name=model_param_name,
+        joint_names=list(joint_names),
+        joint_positions=list(joint_positions),
+    )
     if response is None:
         return None
     rospy.loginfo('Set model configuration status: %s', response.status_message)

@@ -49,8 +49,10 @@ def run(command: str, flags: argparse.Namespace, ros_arguments: Sequence[str]) -
 def world(call: Call, flags: argparse.Namespace) -> Lines:
     """Pause or unpause, make steps, reset, in this order; steps pause first, as in Gazebo."""
     if flags.reset_time:
-        raise CommandError('time alone cannot be reset (-t); use -r for time and models, or -o '
-                           'for the models alone')
+        raise CommandError(
+            'time alone cannot be reset (-t); use -r for time and models, or -o '
+            'for the models alone'
+        )
     if flags.pause is not None:
         call('pause_physics' if flags.pause else 'unpause_physics', Empty)
     steps = (flags.multi_step or 0) + flags.step
@@ -73,16 +75,24 @@ def model(call: Call, flags: argparse.Namespace) -> Lines:
         call('delete_model', DeleteModel, model_name=name)
     elif flags.spawn_file or flags.spawn_string:
         text = read_file(flags.spawn_file) if flags.spawn_file else _standard_input()
-        call('spawn_sdf_model', SpawnModel, model_name=name, model_xml=canonical_xml(text),
-             initial_pose=_pose(flags))
+        call(
+            'spawn_sdf_model',
+            SpawnModel,
+            model_name=name,
+            model_xml=canonical_xml(text),
+            initial_pose=_pose(flags),
+        )
     elif flags.info:
         yield from _info(call, name)
     elif flags.pose:
         yield _six_numbers(call('get_model_state', GetModelState, model_name=name).pose)
     else:  # its velocity stays, as in Gazebo
         twist = call('get_model_state', GetModelState, model_name=name).twist
-        call('set_model_state', SetModelState,
-             model_state=ModelState(model_name=name, pose=_pose(flags), twist=twist))
+        call(
+            'set_model_state',
+            SetModelState,
+            model_state=ModelState(model_name=name, pose=_pose(flags), twist=twist),
+        )
 
 
 def _standard_input() -> bytes:
@@ -100,8 +110,12 @@ def _pose(flags: argparse.Namespace) -> Pose:
 def _six_numbers(pose: Pose) -> str:
     """Return x y z roll pitch yaw with six digits after the point, as Gazebo prints poses."""
     position, orientation = pose.position, pose.orientation
-    numbers = (position.x, position.y, position.z, *to_rpy(as_quaternion(
-        (orientation.x, orientation.y, orientation.z, orientation.w))))
+    numbers = (
+        position.x,
+        position.y,
+        position.z,
+        *to_rpy(as_quaternion((orientation.x, orientation.y, orientation.z, orientation.w))),
+    )
     return ' '.join(f'{round(number, 6) + 0.0:g}' for number in numbers)  # no -0
 
 
@@ -128,11 +142,14 @@ def physics(call: Call, flags: argparse.Namespace) -> Lines:
     now = call('get_physics_properties', GetPhysicsProperties)
     if flags.iters is not None:
         now.ode_config.sor_pgs_iters = flags.iters
-    call('set_physics_properties', SetPhysicsProperties,
-         time_step=_given(flags.step_size, now.time_step),
-         max_update_rate=_given(flags.update_rate, now.max_update_rate),
-         gravity=Vector3(*flags.gravity) if flags.gravity else now.gravity,
-         ode_config=now.ode_config)
+    call(
+        'set_physics_properties',
+        SetPhysicsProperties,
+        time_step=_given(flags.step_size, now.time_step),
+        max_update_rate=_given(flags.update_rate, now.max_update_rate),
+        gravity=Vector3(*flags.gravity) if flags.gravity else now.gravity,
+        ode_config=now.ode_config,
+    )
     yield from ()
 
 
@@ -171,8 +188,10 @@ def stats(
             if flags.plot:
                 yield f'{factor:4.2f}, {simulated:16.6f}, {real:16.6f}, {paused}'
             else:
-                yield (f'Factor[{factor:4.2f}] SimTime[{simulated:4.2f}] '
-                       f'RealTime[{real:4.2f}] Paused[{paused}]')
+                yield (
+                    f'Factor[{factor:4.2f}] SimTime[{simulated:4.2f}] '
+                    f'RealTime[{real:4.2f}] Paused[{paused}]'
+                )
         sleep(PERIOD)
 
 
@@ -188,5 +207,9 @@ def real_time_factor(samples: Sequence[tuple[float, float]]) -> float:
 
 
 COMMANDS: dict[str, Callable[[Call, argparse.Namespace], Lines]] = {
-    'model': model, 'physics': physics, 'stats': stats, 'topic': topic, 'world': world,
+    'model': model,
+    'physics': physics,
+    'stats': stats,
+    'topic': topic,
+    'world': world,
 }

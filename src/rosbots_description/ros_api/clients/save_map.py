@@ -26,12 +26,14 @@ class MapOptions(NamedTuple):
     without: tuple[str, ...]
 
 
-def run(name: str, world: str | None, ros_arguments: Sequence[str], section: MapOptions,
-        overwrite: bool) -> int:
+def run(
+    name: str, world: str | None, ros_arguments: Sequence[str], section: MapOptions, overwrite: bool
+) -> int:
     """Write NAME.pgm and NAME.yaml of a world file, or of the running world; return exit code."""
     if world is None:
         return service_program.run(
-            'save_map', lambda call: _save_running(call, name, section, overwrite), ros_arguments)
+            'save_map', lambda call: _save_running(call, name, section, overwrite), ros_arguments
+        )
     try:
         for line in _save(name, world, section, overwrite):
             sys.stdout.write(f'{printable(line, LAYOUT)}\n')
@@ -70,13 +72,20 @@ def _save_running(call: Call, name: str, section: MapOptions, overwrite: bool) -
 def _save(name: str, world: str, section: MapOptions, overwrite: bool) -> Iterator[str]:
     try:
         with World.from_file(world) as opened:
-            grid = opened.save_map(name, section.height, section.resolution,
-                                   without=section.without, margin=section.margin,
-                                   overwrite=overwrite)
+            grid = opened.save_map(
+                name,
+                section.height,
+                section.resolution,
+                without=section.without,
+                margin=section.margin,
+                overwrite=overwrite,
+            )
     except ValueError as error:
         raise SimError(str(error)) from None
     rows, columns = grid.occupied.shape
-    yield (f'a map of {columns} x {rows} cells, {grid.occupied.sum()} of them occupied: '
-           f'{name.removesuffix(".yaml")}.yaml')
+    yield (
+        f'a map of {columns} x {rows} cells, {grid.occupied.sum()} of them occupied: '
+        f'{name.removesuffix(".yaml")}.yaml'
+    )
     if grid.left_out:
         yield f'left out: {", ".join(grid.left_out)}'

@@ -15,7 +15,8 @@ from .service_program import Call, Lines
 def run(path: str, overwrite: bool, ros_arguments: Sequence[str]) -> int:
     """Save the world; return the exit code. See `save`."""
     return service_program.run(
-        'save_world', lambda call: save(call, path, overwrite), ros_arguments)
+        'save_world', lambda call: save(call, path, overwrite), ros_arguments
+    )
 
 
 def save(call: Call, path: str, overwrite: bool) -> Lines:

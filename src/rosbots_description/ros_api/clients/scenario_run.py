@@ -64,8 +64,9 @@ class _Run:
 
     def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
         self._file, self._run, self._scenario = file, run, scenario
-        self._statistics = {name: Statistics() for name, record in scenario.record.items()
-                            if record.value}
+        self._statistics = {
+            name: Statistics() for name, record in scenario.record.items() if record.value
+        }
         self._readings: dict[str, Any] = dict.fromkeys(scenario.record)
         self._publishers: dict[str, rospy.Publisher] = {}
         self._end = contextlib.ExitStack()
@@ -101,19 +102,22 @@ class _Run:
 
         message_class = _message_class(record.topic, f"record '{name}'")
         subscriber = rospy.Subscriber(
-            _global(record.topic), message_class, receive, tcp_nodelay=True)
+            _global(record.topic), message_class, receive, tcp_nodelay=True
+        )
         self._end.callback(subscriber.unregister)
-        _wait(subscriber.get_num_connections,
-              f"record '{name}': nothing is sent on the topic '{record.topic}'")
+        _wait(
+            subscriber.get_num_connections,
+            f"record '{name}': nothing is sent on the topic '{record.topic}'",
+        )
 
     def _publisher(self, topic: str) -> rospy.Publisher:
         """Return what sends to a topic, connected."""
         if topic not in self._publishers:
-            publisher = rospy.Publisher(_global(topic), _message_class(topic, 'commands'),
-                                        queue_size=10, tcp_nodelay=True)
+            publisher = rospy.Publisher(
+                _global(topic), _message_class(topic, 'commands'), queue_size=10, tcp_nodelay=True
+            )
             self._end.callback(publisher.unregister)
-            _wait(publisher.get_num_connections,
-                  f"nothing takes commands on the topic '{topic}'")
+            _wait(publisher.get_num_connections, f"nothing takes commands on the topic '{topic}'")
             self._publishers[topic] = publisher
         return self._publishers[topic]
 
@@ -127,8 +131,9 @@ class _Run:
     def _advance(self) -> None:
         """Wait for the end, with commands and records in between; the policy acts first."""
         scenario, begin = self._scenario, rospy.get_time()
-        policy = load_policy(scenario.policy, self._file.folder, self._run) \
-            if scenario.policy else None
+        policy = (
+            load_policy(scenario.policy, self._file.folder, self._run) if scenario.policy else None
+        )
         commands = sorted(scenario.commands, key=lambda command: command.at)
         ticks = 0
         while True:
@@ -146,8 +151,13 @@ class _Run:
                 self._send(command.topic, command.message)
             if is_over:
                 return
-            soon = min([ticks * scenario.period, scenario.duration,
-                        *(command.at for command in commands[:1])])
+            soon = min(
+                [
+                    ticks * scenario.period,
+                    scenario.duration,
+                    *(command.at for command in commands[:1]),
+                ]
+            )
             rospy.sleep(max(1e-3, soon - (rospy.get_time() - begin)))
 
     def _read_states(self) -> None:
@@ -188,8 +198,11 @@ def _message_class(topic: str, where: str) -> type[genpy.Message]:
 
     def look() -> bool:
         types = dict(rospy.get_master().getTopicTypes()[2])
-        found[:] = [roslib.message.get_message_class(types[_global(topic)])] \
-            if _global(topic) in types else []
+        found[:] = (
+            [roslib.message.get_message_class(types[_global(topic)])]
+            if _global(topic) in types
+            else []
+        )
         return bool(found)
 
     _wait(look, f"{where}: there is no topic '{topic}'")

@@ -79,8 +79,14 @@ class Notice:
         from ..views.markers import notice
 
         if not is_node():
-            init_node('gzclient_notice', [], anonymous=True, disable_signals=True,
-                      disable_rostime=True, disable_rosout=True)
+            init_node(
+                'gzclient_notice',
+                [],
+                anonymous=True,
+                disable_signals=True,
+                disable_rostime=True,
+                disable_rosout=True,
+            )
         self._publisher = rospy.Publisher(MARKERS_TOPIC, MarkerArray, latch=True, queue_size=1)
         self._publisher.publish(MarkerArray([notice(NOTICE)]))
 

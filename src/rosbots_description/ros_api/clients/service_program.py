@@ -29,9 +29,7 @@ class CommandError(Exception):
     """A command cannot be done; the message says why."""
 
 
-def run(
-    program: str, act: Callable[[Call], Lines], ros_arguments: Sequence[str]
-) -> int:
+def run(program: str, act: Callable[[Call], Lines], ros_arguments: Sequence[str]) -> int:
     """Act on the running simulator, print what comes of it, and return the exit code.
 
     Args:
@@ -74,9 +72,16 @@ def _connect(node: str, ros_arguments: Sequence[str]) -> None:
     require_address()
     if not is_master_running(f'/{node}'):
         raise CommandError(
-            f'there is no ROS master at {rosgraph.get_master_uri()}, and so no simulator; {START}')
-    init_node(node, ros_arguments, anonymous=True, disable_signals=True, disable_rostime=True,
-              disable_rosout=True)
+            f'there is no ROS master at {rosgraph.get_master_uri()}, and so no simulator; {START}'
+        )
+    init_node(
+        node,
+        ros_arguments,
+        anonymous=True,
+        disable_signals=True,
+        disable_rostime=True,
+        disable_rosout=True,
+    )
 
 
 def _call(service: str, service_type: type[Any], **request: object) -> Message:

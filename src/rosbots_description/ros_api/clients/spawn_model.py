@@ -32,8 +32,10 @@ DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 
 _SETTLE = 1.0  # [s] wall time for the joints to appear after the simulator's answer
 # As sent by Gazebo's client; the server searches its model path only.
-_DATABASE = ('<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
-             '</world></sdf>')
+_DATABASE = (
+    '<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
+    '</world></sdf>'
+)
 _LISTED = 12  # omissions that are listed by name
 _DELETE_TIMEOUT = 1.5  # [s] wall time, within the 2 s that Ctrl-C may take
 
@@ -127,23 +129,31 @@ def _read_parameter(name: str) -> str:
     try:
         text = rospy.get_param(name)
     except KeyError as error:
-        raise SourceError(f'Error: param does not exist or is empty: {resolved} was never set; '
-                          'load the model into it first') from error
+        raise SourceError(
+            f'Error: param does not exist or is empty: {resolved} was never set; '
+            'load the model into it first'
+        ) from error
     if not isinstance(text, str):
-        raise SourceError(f'Error: param {resolved} holds {type(text).__name__}, not the XML text '
-                          'of a model')
+        raise SourceError(
+            f'Error: param {resolved} holds {type(text).__name__}, not the XML text of a model'
+        )
     if not text.strip():
         raise SourceError(f'Error: param does not exist or is empty: {resolved} is empty')
     return text
 
 
 def _spawn(flags: argparse.Namespace, xml: str, joints: dict[str, float]) -> int:
-    pose = Pose(Point(flags.x, flags.y, flags.z),
-                Quaternion(*from_rpy(flags.R, flags.P, flags.Y)))
+    pose = Pose(Point(flags.x, flags.y, flags.z), Quaternion(*from_rpy(flags.R, flags.P, flags.Y)))
     namespace = flags.robot_namespace
     spawn = spawn_urdf_model_client if flags.urdf else spawn_sdf_model_client
-    if not spawn(flags.model, xml, rospy.get_namespace() if namespace is None else namespace,
-                 pose, flags.reference_frame, flags.gazebo_namespace):
+    if not spawn(
+        flags.model,
+        xml,
+        rospy.get_namespace() if namespace is None else namespace,
+        pose,
+        flags.reference_frame,
+        flags.gazebo_namespace,
+    ):
         rospy.logerr('Spawn service failed. Exiting.')
         return FAILED
     _log_omissions(flags.model, flags.gazebo_namespace)
@@ -172,15 +182,20 @@ def _log_omissions(model: str, gazebo_namespace: str) -> None:
         omissions = interruptibly(lambda: get_omissions(model), timeout=_SETTLE).omissions
         if omissions:
             more = f' and {len(omissions) - _LISTED} more' if len(omissions) > _LISTED else ''
-            rospy.logwarn('spawned without: %s%s; see doc/gazebo_compatibility.md and the log of '
-                          'the simulator', ', '.join(omissions[:_LISTED]), more)
+            rospy.logwarn(
+                'spawned without: %s%s; see doc/gazebo_compatibility.md and the log of '
+                'the simulator',
+                ', '.join(omissions[:_LISTED]),
+                more,
+            )
 
 
 def _set_joints(flags: argparse.Namespace, joints: dict[str, float]) -> bool | None:
     rospy.loginfo('Giving the joints of %s %.0f s to appear', flags.model, _SETTLE)
     interruptibly(lambda: time.sleep(_SETTLE))
-    return set_model_configuration_client(flags.model, '', list(joints),
-                                          list(joints.values()), flags.gazebo_namespace)
+    return set_model_configuration_client(
+        flags.model, '', list(joints), list(joints.values()), flags.gazebo_namespace
+    )
 
 
 def _unpause(gazebo_namespace: str) -> bool:

@@ -32,8 +32,9 @@ class VelocityPublisher:
         self._sent = 0  # number of commands, to detect that no repetition is needed
         self._ended = False
         self._changed = threading.Condition()
-        self._publisher = rospy.Publisher('cmd_vel', TwistStamped if stamped else Twist,
-                                          queue_size=1)
+        self._publisher = rospy.Publisher(
+            'cmd_vel', TwistStamped if stamped else Twist, queue_size=1
+        )
         rospy.on_shutdown(self.end)
         if repeat_rate > 0.0:
             threading.Thread(target=self._repeat, args=(1.0 / repeat_rate,), daemon=True).start()

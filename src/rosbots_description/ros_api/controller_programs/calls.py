@@ -107,8 +107,11 @@ def reload_libraries(force_kill: bool, restore: bool = False) -> bool:
     _print(f'Restore: {restore}')
     before = call('list_controllers', ListControllers).controller if restore else []
     answer = call('reload_controller_libraries', ReloadControllerLibraries, force_kill=force_kill)
-    _print('Successfully reloaded libraries' if answer.ok else
-           'Failed to reload libraries. Do you still have controllers loaded?')
+    _print(
+        'Successfully reloaded libraries'
+        if answer.ok
+        else 'Failed to reload libraries. Do you still have controllers loaded?'
+    )
     if restore:
         for one in before:
             call('load_controller', LoadController, name=one.name)
@@ -119,8 +122,15 @@ def reload_libraries(force_kill: bool, restore: bool = False) -> bool:
 
 def switch(starting: Sequence[str], stopping: Sequence[str], strictness: int) -> bool:
     """Start and stop controllers without printing; tell whether it worked."""
-    return bool(call('switch_controller', SwitchController, start_controllers=list(starting),
-                     stop_controllers=list(stopping), strictness=strictness).ok)
+    return bool(
+        call(
+            'switch_controller',
+            SwitchController,
+            start_controllers=list(starting),
+            stop_controllers=list(stopping),
+            strictness=strictness,
+        ).ok
+    )
 
 
 def call(service: str, service_class: type[Any], **request: object) -> Message:

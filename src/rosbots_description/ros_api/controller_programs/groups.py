@@ -47,14 +47,18 @@ def switch(group: str) -> None:
     wanted, others = _read(group)
     if not wanted:
         return
-    running = {one.name: one.state == RUNNING
-               for one in call('list_controllers', ListControllers).controller}
+    running = {
+        one.name: one.state == RUNNING
+        for one in call('list_controllers', ListControllers).controller
+    }
     for name in wanted:
         if name not in running and not load_controller(name):
             sys.stdout.write('Cancel group switching\n')
             return
-    start_stop_controllers([name for name in wanted if not running.get(name)],
-                           [name for name in others if running.get(name)])
+    start_stop_controllers(
+        [name for name in wanted if not running.get(name)],
+        [name for name in others if running.get(name)],
+    )
 
 
 def _groups() -> dict[str, list[str]]:

@@ -101,8 +101,9 @@ class Spawner:
                 if is_running() and rospy.get_param('/use_sim_time', False) and _is_before_time():
                     rospy.loginfo('Waiting for /clock to be available...')
                     continue
-            rospy.logwarn("Controller Spawner couldn't find the expected controller_manager ROS "
-                          'interface.')
+            rospy.logwarn(
+                "Controller Spawner couldn't find the expected controller_manager ROS interface."
+            )
             return False
 
     def bring_up(self, names: Sequence[str], start: bool) -> None:
@@ -152,9 +153,15 @@ class Spawner:
             rospy.logerr(f'Failed to load {name}')
 
     def _switch(self, start: Sequence[str] = (), stop: Sequence[str] = ()) -> bool:
-        return bool(self._call(
-            'switch_controller', SwitchController, start_controllers=list(start),
-            stop_controllers=list(stop), strictness=SwitchControllerRequest.STRICT).ok)
+        return bool(
+            self._call(
+                'switch_controller',
+                SwitchController,
+                start_controllers=list(start),
+                stop_controllers=list(stop),
+                strictness=SwitchControllerRequest.STRICT,
+            ).ok
+        )
 
     def _call(self, service: str, service_class: type[Any], **request: object) -> Message:
         proxy = rospy.ServiceProxy(self._manager + service, service_class)
@@ -175,8 +182,9 @@ def _wait_for_topic(topic: str, timeout: float | None) -> bool:
             return False
         if patience is not None and not heard and time.monotonic() > patience:
             patience = None
-            rospy.logwarn("Controller Spawner hasn't heard anything from its \"wait for\" topic "
-                          f'({topic})')
+            rospy.logwarn(
+                f'Controller Spawner hasn\'t heard anything from its "wait for" topic ({topic})'
+            )
         time.sleep(_POLL)
     subscriber.unregister()
     return True

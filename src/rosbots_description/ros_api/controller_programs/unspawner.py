@@ -68,8 +68,11 @@ class Unspawner:
             rospy.ServiceException: a call failed.
             rospy.ROSInterruptException: the node is shutting down.
         """
-        running = {one.name for one in call('list_controllers', ListControllers).controller
-                   if one.state == RUNNING}
+        running = {
+            one.name
+            for one in call('list_controllers', ListControllers).controller
+            if one.state == RUNNING
+        }
         found = sorted(self._names & running)
         with self._stopping:
             if found and not self._ending:
@@ -86,7 +89,9 @@ class Unspawner:
             try:
                 # Without waiting for a manager that was deleted.
                 proxy = rospy.ServiceProxy(f'{MANAGER}/switch_controller', SwitchController)
-                interruptibly(lambda: proxy(
-                    start_controllers=sorted(self._stopped), strictness=BEST_EFFORT), _LAST_CALL)
+                interruptibly(
+                    lambda: proxy(start_controllers=sorted(self._stopped), strictness=BEST_EFFORT),
+                    _LAST_CALL,
+                )
             except (rospy.ServiceException, rospy.ROSException) as error:
                 rospy.logwarn(f'unspawner: the controllers were not started again: {error}')

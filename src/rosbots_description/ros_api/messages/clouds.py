@@ -10,9 +10,16 @@ from ...sim.core import SimError
 from .conversions import read_vector
 
 MAX_POINTS = 20_000  # that are shown; of more, every second, third … is
-_KINDS = {PointField.INT8: 'i1', PointField.UINT8: 'u1', PointField.INT16: 'i2',
-          PointField.UINT16: 'u2', PointField.INT32: 'i4', PointField.UINT32: 'u4',
-          PointField.FLOAT32: 'f4', PointField.FLOAT64: 'f8'}
+_KINDS = {
+    PointField.INT8: 'i1',
+    PointField.UINT8: 'u1',
+    PointField.INT16: 'i2',
+    PointField.UINT16: 'u2',
+    PointField.INT32: 'i4',
+    PointField.UINT32: 'u4',
+    PointField.FLOAT32: 'f4',
+    PointField.FLOAT64: 'f8',
+}
 Points = NDArray[np.float32]  # (n, 3) [m]
 Colours = NDArray[np.uint8]  # (n, 3), RGB
 
@@ -33,13 +40,12 @@ def cloud_points(message: PointCloud2) -> tuple[Points, Colours | None]:
     if 'rgb' not in (layout.names or ()):
         return positions[finite], None
     packed = points['rgb'][finite]
-    return positions[finite], np.stack(
-        [packed >> 16, packed >> 8, packed], axis=1).astype(np.uint8)
+    return positions[finite], np.stack([packed >> 16, packed >> 8, packed], axis=1).astype(np.uint8)
 
 
 def old_cloud_points(message: PointCloud) -> Points:
     """Return the points that are finite."""
-    sampled = message.points[::max(1, -(-len(message.points) // MAX_POINTS))]
+    sampled = message.points[:: max(1, -(-len(message.points) // MAX_POINTS))]
     points = np.array([read_vector(point) for point in sampled], np.float32).reshape(-1, 3)
     finite: Points = points[np.isfinite(points).all(axis=1)]
     return finite
@@ -53,11 +59,17 @@ def _layout(message: PointCloud2, fields: dict[str, PointField]) -> np.dtype[np.
         used['rgb'] = colour
     order = '>' if message.is_bigendian else '<'
     try:
-        return np.dtype({
-            'names': list(used), 'offsets': [field.offset for field in used.values()],
-            'formats': [order + ('u4' if name == 'rgb' else _KINDS[field.datatype])
-                        for name, field in used.items()],
-            'itemsize': message.point_step})
+        return np.dtype(
+            {
+                'names': list(used),
+                'offsets': [field.offset for field in used.values()],
+                'formats': [
+                    order + ('u4' if name == 'rgb' else _KINDS[field.datatype])
+                    for name, field in used.items()
+                ],
+                'itemsize': message.point_step,
+            }
+        )
     except (KeyError, ValueError) as error:
         raise SimError(f'its fields are no points of {message.point_step} bytes') from error
 
@@ -66,11 +78,13 @@ def _sampled(message: PointCloud2, layout: np.dtype[np.void]) -> NDArray[np.void
     """Return no more than about `MAX_POINTS` of its points, evenly."""
     height, width, length = message.height, message.width, message.row_step * message.height
     if len(message.data) < length or message.row_step < width * message.point_step:
-        raise SimError(f'its {len(message.data)} bytes are no {width} x {height} points of '
-                       f'{message.point_step} bytes')
+        raise SimError(
+            f'its {len(message.data)} bytes are no {width} x {height} points of '
+            f'{message.point_step} bytes'
+        )
     rows = np.frombuffer(message.data, np.uint8, length).reshape(height, message.row_step)
-    rows = rows[:, :width * message.point_step]
+    rows = rows[:, : width * message.point_step]
     stride = max(1, math.ceil(math.sqrt(width * height / MAX_POINTS)))
     if height == 1:
-        return np.ascontiguousarray(rows).view(layout)[0, ::stride * stride]
+        return np.ascontiguousarray(rows).view(layout)[0, :: stride * stride]
     return np.ascontiguousarray(rows[::stride]).view(layout)[:, ::stride].reshape(-1)

@@ -9,8 +9,14 @@ import roslib.message
 
 from ...sim.core import SimError
 
-NUMBERS = {'bool', 'byte', 'char', 'float32', 'float64',
-           *(f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64))}
+NUMBERS = {
+    'bool',
+    'byte',
+    'char',
+    'float32',
+    'float64',
+    *(f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)),
+}
 
 
 def number_paths(kind: type[Any]) -> tuple[str, ...]:
@@ -40,8 +46,10 @@ def number_getter(kind: type[Any], path: str) -> Callable[[Any], float]:
         fields = _fields(inner) if inner else {}
         found = re.fullmatch(r'(\w+)(?:\[(\d{1,9})\])?', part)
         if not found or found[1] not in fields:
-            raise SimError(f"{base} has no field '{part}'"
-                           + (f'; it has {", ".join(fields)}.' if fields else '.'))
+            raise SimError(
+                f"{base} has no field '{part}'"
+                + (f'; it has {", ".join(fields)}.' if fields else '.')
+            )
         name, index = found[1], found[2]
         field, is_array = fields[name]
         if is_array and index is None:
@@ -61,13 +69,16 @@ def number_getter(kind: type[Any], path: str) -> Callable[[Any], float]:
                     return math.nan
                 message = message[index]
         return float(message)
+
     return get
 
 
 def _fields(kind: type[Any]) -> dict[str, tuple[str, bool]]:
     """Return type, without brackets, of each field, and whether it is an array."""
-    return {name: (told.partition('[')[0], '[' in told)
-            for name, told in zip(kind.__slots__, kind._slot_types, strict=True)}
+    return {
+        name: (told.partition('[')[0], '[' in told)
+        for name, told in zip(kind.__slots__, kind._slot_types, strict=True)
+    }
 
 
 def _class(base: str) -> type[Any] | None:

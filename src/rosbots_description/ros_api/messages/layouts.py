@@ -48,9 +48,16 @@ class OdometryLayout:
         """Return the message with the number `seq`, stamped `now_ns` [ns]."""
         pose, twist = reading
         return self._layout.pack(
-            self._size, seq, *divmod(now_ns, NANOSECONDS), self._frames,
-            *pose.position, *pose.orientation, self._pose_covariance,
-            *twist.linear, *twist.angular, self._twist_covariance,
+            self._size,
+            seq,
+            *divmod(now_ns, NANOSECONDS),
+            self._frames,
+            *pose.position,
+            *pose.orientation,
+            self._pose_covariance,
+            *twist.linear,
+            *twist.angular,
+            self._twist_covariance,
         )
 
 
@@ -66,8 +73,13 @@ class TransformLayout:
     def pack(self, now_ns: int, pose: Pose) -> bytes:
         """Return the message for the child standing so in its parent at `now_ns` [ns]."""
         return self._layout.pack(  # one transform, whose header nobody counts
-            self._size, 1, 0, *divmod(now_ns, NANOSECONDS), self._frames,
-            *pose.position, *pose.orientation,
+            self._size,
+            1,
+            0,
+            *divmod(now_ns, NANOSECONDS),
+            self._frames,
+            *pose.position,
+            *pose.orientation,
         )
 
 
@@ -99,8 +111,13 @@ class LaserScanLayout:
         self._layout = struct.Struct(f'<4I{len(self._frame)}s7f')
 
     def pack(
-        self, seq: int, now_ns: int, angles: Sequence[float], limits: Sequence[float],
-        ranges: NDArray[np.float64], intensities: NDArray[np.float64],
+        self,
+        seq: int,
+        now_ns: int,
+        angles: Sequence[float],
+        limits: Sequence[float],
+        ranges: NDArray[np.float64],
+        intensities: NDArray[np.float64],
     ) -> bytes:
         """Return the message with the number `seq`, stamped `now_ns` [ns].
 
@@ -110,7 +127,8 @@ class LaserScanLayout:
         """
         size = self._layout.size - _SIZE + 8 + 4 * (len(ranges) + len(intensities))
         head = self._layout.pack(
-            size, seq, *divmod(now_ns, NANOSECONDS), self._frame, *angles, 0.0, 0.0, *limits)
+            size, seq, *divmod(now_ns, NANOSECONDS), self._frame, *angles, 0.0, 0.0, *limits
+        )
         return head + floats(ranges) + floats(intensities)
 
 
@@ -123,7 +141,10 @@ class PointCloudLayout:
         self._layout = struct.Struct(f'<4I{len(self._frame)}sI')
 
     def pack(
-        self, seq: int, now_ns: int, positions: NDArray[np.float64],
+        self,
+        seq: int,
+        now_ns: int,
+        positions: NDArray[np.float64],
         intensities: NDArray[np.float64],
     ) -> bytes:
         """Return the message with the number `seq`, stamped `now_ns` [ns].
@@ -132,11 +153,17 @@ class PointCloudLayout:
             positions: (n, 3) [m] in the frame.
             intensities: (n,).
         """
-        tail = (positions.astype('<f4').tobytes() + struct.pack('<I', 1) + _text('')
-                + floats(intensities))
+        tail = (
+            positions.astype('<f4').tobytes()
+            + struct.pack('<I', 1)
+            + _text('')
+            + floats(intensities)
+        )
         size = self._layout.size - _SIZE + len(tail)
-        return self._layout.pack(
-            size, seq, *divmod(now_ns, NANOSECONDS), self._frame, len(positions)) + tail
+        return (
+            self._layout.pack(size, seq, *divmod(now_ns, NANOSECONDS), self._frame, len(positions))
+            + tail
+        )
 
 
 class ImuLayout:
@@ -152,11 +179,18 @@ class ImuLayout:
         """Return the message with the number `seq`, stamped `now_ns` [ns]."""
         covariances = [0.0] * 27  # row-major 3x3 each
         for i in range(3):
-            covariances[9 * i:9 * i + 9:4] = reading.variances[3 * i:3 * i + 3]
+            covariances[9 * i : 9 * i + 9 : 4] = reading.variances[3 * i : 3 * i + 3]
         return self._layout.pack(
-            self._size, seq, *divmod(now_ns, NANOSECONDS), self._frame,
-            *reading.orientation, *covariances[:9], *reading.angular_velocity, *covariances[9:18],
-            *reading.linear_acceleration, *covariances[18:],
+            self._size,
+            seq,
+            *divmod(now_ns, NANOSECONDS),
+            self._frame,
+            *reading.orientation,
+            *covariances[:9],
+            *reading.angular_velocity,
+            *covariances[9:18],
+            *reading.linear_acceleration,
+            *covariances[18:],
         )
 
 

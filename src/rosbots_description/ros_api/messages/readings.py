@@ -12,31 +12,46 @@ from .conversions import read_pose, read_twist, read_vector
 
 
 def _scan(message: Any) -> Scan:  # noqa: ANN401  each of these takes its type of message
-    return Scan(np.array(message.ranges, float), np.array(message.intensities, float),
-                message.angle_min, message.angle_max, message.angle_increment, message.range_min,
-                message.range_max)
+    return Scan(
+        np.array(message.ranges, float),
+        np.array(message.intensities, float),
+        message.angle_min,
+        message.angle_max,
+        message.angle_increment,
+        message.range_min,
+        message.range_max,
+    )
 
 
 def _imu(message: Any) -> ImuReading:  # noqa: ANN401
     q = message.orientation
-    return ImuReading((q.x, q.y, q.z, q.w), read_vector(message.angular_velocity),
-                      read_vector(message.linear_acceleration))
+    return ImuReading(
+        (q.x, q.y, q.z, q.w),
+        read_vector(message.angular_velocity),
+        read_vector(message.linear_acceleration),
+    )
 
 
 _READERS: dict[str, Callable[[Any], object]] = {
     'gazebo_msgs/ContactsState': lambda message: tuple(message.states),
     'geometry_msgs/WrenchStamped': lambda message: JointWrench(
-        read_vector(message.wrench.force), read_vector(message.wrench.torque)),
+        read_vector(message.wrench.force), read_vector(message.wrench.torque)
+    ),
     'nav_msgs/Odometry': lambda message: Odometry(
-        read_pose(message.pose.pose), read_twist(message.twist.twist)),
+        read_pose(message.pose.pose), read_twist(message.twist.twist)
+    ),
     'sensor_msgs/Imu': _imu,
     'sensor_msgs/JointState': lambda message: JointStates(
-        tuple(message.name), tuple(message.position), tuple(message.velocity),
-        tuple(message.effort)),
+        tuple(message.name), tuple(message.position), tuple(message.velocity), tuple(message.effort)
+    ),
     'sensor_msgs/LaserScan': _scan,
     'sensor_msgs/Range': lambda message: Distance(
-        message.range, message.min_range, message.max_range, message.field_of_view,
-        message.radiation_type == message.INFRARED),
+        message.range,
+        message.min_range,
+        message.max_range,
+        message.field_of_view,
+        message.radiation_type == message.INFRARED,
+    ),
 }
 
 
@@ -48,6 +63,8 @@ def read_reading(message: Message) -> object:
     """
     read = _READERS.get(message._type)
     if read is None:
-        raise ValueError(f'messages of the type {message._type} are not recorded; those that are: '
-                         f'{", ".join(_READERS)}')
+        raise ValueError(
+            f'messages of the type {message._type} are not recorded; those that are: '
+            f'{", ".join(_READERS)}'
+        )
     return read(message)

@@ -62,8 +62,11 @@ def map_grid(message: OccupancyGrid) -> ShownReading:
         return ShownReading(message.header.frame_id, words=words)
     merged = -(-max(info.width, info.height) // WIDEST)
     shown = _merged(cells.reshape(info.height, info.width), merged)
-    return ShownReading(message.header.frame_id, words=words, grid=ShownGrid(
-        map_cells(shown), info.resolution * merged, origin))
+    return ShownReading(
+        message.header.frame_id,
+        words=words,
+        grid=ShownGrid(map_cells(shown), info.resolution * merged, origin),
+    )
 
 
 def _merged(cells: NDArray[np.int8], number: int) -> NDArray[np.int8]:
@@ -72,42 +75,57 @@ def _merged(cells: NDArray[np.int8], number: int) -> NDArray[np.int8]:
         return cells
     rows, columns = (-(-size // number) * number for size in cells.shape)
     whole = np.full((rows, columns), -1, np.int8)
-    whole[:cells.shape[0], :cells.shape[1]] = cells
-    return np.asarray(whole.reshape(
-        rows // number, number, columns // number, number).max(axis=(1, 3)))
+    whole[: cells.shape[0], : cells.shape[1]] = cells
+    return np.asarray(
+        whole.reshape(rows // number, number, columns // number, number).max(axis=(1, 3))
+    )
 
 
 def path(message: Path) -> ShownReading:
     """Return the way through the poses of a path."""
     points = _numbers([one.pose for one in message.poses])[:, :3]
     return ShownReading(
-        message.header.frame_id, lines=np.stack([points[:-1], points[1:]], axis=1).astype('f4'),
-        line_colour=PATH, line_width=WIDTH, words=f'{len(message.poses)} poses')
+        message.header.frame_id,
+        lines=np.stack([points[:-1], points[1:]], axis=1).astype('f4'),
+        line_colour=PATH,
+        line_width=WIDTH,
+        words=f'{len(message.poses)} poses',
+    )
 
 
 def pose_cloud(message: PoseArray) -> ShownReading:
     """Return an arrow for each pose."""
-    return ShownReading(message.header.frame_id, lines=_arrows(message.poses, ARROW),
-                        line_colour=CLOUD, line_width=WIDTH,
-                        words=f'{len(message.poses)} poses')
+    return ShownReading(
+        message.header.frame_id,
+        lines=_arrows(message.poses, ARROW),
+        line_colour=CLOUD,
+        line_width=WIDTH,
+        words=f'{len(message.poses)} poses',
+    )
 
 
 def goal(message: PoseStamped) -> ShownReading:
     """Return an arrow."""
     at = message.pose.position
-    return ShownReading(message.header.frame_id, lines=_arrows([message.pose], GOAL_ARROW),
-                        line_colour=GOAL, line_width=WIDTH,
-                        words=f'x {at.x:.3f}, y {at.y:.3f} m')
+    return ShownReading(
+        message.header.frame_id,
+        lines=_arrows([message.pose], GOAL_ARROW),
+        line_colour=GOAL,
+        line_width=WIDTH,
+        words=f'x {at.x:.3f}, y {at.y:.3f} m',
+    )
 
 
 def _arrows(poses: Sequence[PoseMessage], length: float) -> NDArray[np.float32]:
     """Return a shaft and two barbs (3 n, 2, 3) for each pose, along its x axis."""
     numbers = _numbers(poses)
     start, (x, y, z, w) = numbers[:, :3], numbers[:, 3:].T
-    along = np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
-                     axis=1)
-    left = np.stack([2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
-                    axis=1)
+    along = np.stack(
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=1
+    )
+    left = np.stack(
+        [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)], axis=1
+    )
     tip = start + length * along
     ends = [start, *(tip - BARB * length * (along + side * left) for side in (-1.0, 1.0))]
     return np.concatenate([np.stack([tip, end], axis=1) for end in ends], dtype=np.float32)
@@ -115,10 +133,22 @@ def _arrows(poses: Sequence[PoseMessage], length: float) -> NDArray[np.float32]:
 
 def _numbers(poses: Sequence[PoseMessage]) -> NDArray[np.float64]:
     """Return lifted positions and unit quaternions (n, 7) of the poses that are poses."""
-    shown = poses[::max(1, -(-len(poses) // MOST_POSES))]
-    numbers = np.array([(p.position.x, p.position.y, p.position.z + LIFT, p.orientation.x,
-                         p.orientation.y, p.orientation.z, p.orientation.w) for p in shown],
-                       float).reshape(-1, 7)
+    shown = poses[:: max(1, -(-len(poses) // MOST_POSES))]
+    numbers = np.array(
+        [
+            (
+                p.position.x,
+                p.position.y,
+                p.position.z + LIFT,
+                p.orientation.x,
+                p.orientation.y,
+                p.orientation.z,
+                p.orientation.w,
+            )
+            for p in shown
+        ],
+        float,
+    ).reshape(-1, 7)
     norms = np.linalg.norm(numbers[:, 3:], axis=1, keepdims=True)
     with np.errstate(divide='ignore', invalid='ignore'):
         numbers[:, 3:] = np.where(norms == 0.0, (0.0, 0.0, 0.0, 1.0), numbers[:, 3:] / norms)
@@ -126,4 +156,8 @@ def _numbers(poses: Sequence[PoseMessage]) -> NDArray[np.float64]:
 
 
 SHOWN: dict[type[Any], Callable[[Any], ShownReading]] = {
-    OccupancyGrid: map_grid, Path: path, PoseArray: pose_cloud, PoseStamped: goal}
+    OccupancyGrid: map_grid,
+    Path: path,
+    PoseArray: pose_cloud,
+    PoseStamped: goal,
+}

@@ -49,19 +49,27 @@ def _scan(message: LaserScan) -> ShownReading:
 def _range(message: Range) -> ShownReading:
     end = np.array([[message.range, 0.0, 0.0]], np.float32)
     ends = end[np.isfinite(end).all(axis=1)]
-    return ShownReading(message.header.frame_id, points=ends, lines=ray_lines(ends),
-                        words=f'{message.range:.3f} m')
+    return ShownReading(
+        message.header.frame_id, points=ends, lines=ray_lines(ends), words=f'{message.range:.3f} m'
+    )
 
 
 def _cloud(message: PointCloud2) -> ShownReading:
     points, colours = cloud_points(message)
-    return ShownReading(message.header.frame_id, points=points, colours=colours,
-                        words=f'{message.width * message.height} points')
+    return ShownReading(
+        message.header.frame_id,
+        points=points,
+        colours=colours,
+        words=f'{message.width * message.height} points',
+    )
 
 
 def _old_cloud(message: PointCloud) -> ShownReading:
-    return ShownReading(message.header.frame_id, points=old_cloud_points(message),
-                        words=f'{len(message.points)} points')
+    return ShownReading(
+        message.header.frame_id,
+        points=old_cloud_points(message),
+        words=f'{len(message.points)} points',
+    )
 
 
 def _contacts(message: ContactsState) -> ShownReading:
@@ -77,8 +85,12 @@ def _contacts(message: ContactsState) -> ShownReading:
 
 
 def _numbers(message: Any) -> ShownReading:  # noqa: ANN401  any message
-    return ShownReading(rows=tuple((name, ' '.join(f'{value:.4g}' for value in values))
-                                   for name, values in _leaves(message, '')))
+    return ShownReading(
+        rows=tuple(
+            (name, ' '.join(f'{value:.4g}' for value in values))
+            for name, values in _leaves(message, '')
+        )
+    )
 
 
 def _leaves(message: Any, name: str) -> list[tuple[str, list[float]]]:  # noqa: ANN401
@@ -96,9 +108,17 @@ def _leaves(message: Any, name: str) -> list[tuple[str, list[float]]]:  # noqa: 
 
 
 _SHOWN: dict[type[Any], Callable[[Any], ShownReading]] = {
-    Image: _picture, CompressedImage: _compressed, LaserScan: _scan, Range: _range,
-    PointCloud2: _cloud, PointCloud: _old_cloud, ContactsState: _contacts,
-    Imu: _numbers, WrenchStamped: _numbers, Odometry: _numbers, MagneticField: _numbers,
+    Image: _picture,
+    CompressedImage: _compressed,
+    LaserScan: _scan,
+    Range: _range,
+    PointCloud2: _cloud,
+    PointCloud: _old_cloud,
+    ContactsState: _contacts,
+    Imu: _numbers,
+    WrenchStamped: _numbers,
+    Odometry: _numbers,
+    MagneticField: _numbers,
     NavSatFix: _numbers,
 }
 SENSOR_TYPES = {kind._type: kind for kind in _SHOWN}

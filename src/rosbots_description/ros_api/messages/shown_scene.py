@@ -43,15 +43,16 @@ def read_motion(message: Float64MultiArray) -> ShownMotion:
     time, real_time, iterations, paused = message.data[:_CLOCK]
     poses = {}
     for start in range(_CLOCK, len(message.data), _LINK):
-        number, x, y, z, qx, qy, qz, qw = message.data[start:start + _LINK]
+        number, x, y, z, qx, qy, qz, qw = message.data[start : start + _LINK]
         poses[int(number)] = Pose((x, y, z), (qx, qy, qz, qw))
     return ShownMotion(time, real_time, int(iterations), bool(paused), poses)
 
 
 def contacts_message(contacts: Iterable[ShownContact]) -> Float64MultiArray:
     """Return contacts as numbers: position, normal and force of each."""
-    return Float64MultiArray(data=[
-        number for one in contacts for number in (*one.position, *one.normal, *one.force)])
+    return Float64MultiArray(
+        data=[number for one in contacts for number in (*one.position, *one.normal, *one.force)]
+    )
 
 
 def read_contacts(message: Float64MultiArray) -> list[ShownContact]:
@@ -63,7 +64,8 @@ def read_contacts(message: Float64MultiArray) -> list[ShownContact]:
 def _write(value: Any) -> dict[str, Any]:  # noqa: ANN401  of any class of the description
     """Return the fields of a description, and its class."""
     return {_CLASS: type(value).__name__} | {
-        field.name: getattr(value, field.name) for field in fields(value)}
+        field.name: getattr(value, field.name) for field in fields(value)
+    }
 
 
 def _read(values: dict[str, Any]) -> Any:  # noqa: ANN401  of the class that it names
@@ -73,16 +75,23 @@ def _read(values: dict[str, Any]) -> Any:  # noqa: ANN401  of the class that it 
         return values
     kind = getattr(description, name)
     poses = _poses(kind)
-    return kind(**{
-        field: Pose(*map(tuple, value)) if field in poses and value is not None
-        else _tuples(value) for field, value in values.items() if field != _CLASS})
+    return kind(
+        **{
+            field: Pose(*map(tuple, value))
+            if field in poses and value is not None
+            else _tuples(value)
+            for field, value in values.items()
+            if field != _CLASS
+        }
+    )
 
 
 @cache
 def _poses(kind: type) -> set[str]:
     """Return which fields of a class are poses, as JSON knows no named tuples."""
-    return {field for field, hint in get_type_hints(kind).items()
-            if Pose in (hint, *get_args(hint))}
+    return {
+        field for field, hint in get_type_hints(kind).items() if Pose in (hint, *get_args(hint))
+    }
 
 
 def _tuples(value: Any) -> Any:  # noqa: ANN401  as it is but for lists

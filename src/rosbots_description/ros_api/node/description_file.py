@@ -11,7 +11,10 @@ from .packages import find_file, find_model, find_package
 
 _NAME = 'model'  # of what is checked; the one in the file has no effect
 _SEARCHES: dict[str, Any] = {
-    'find_file': find_file, 'find_model': find_model, 'find_package': find_package}
+    'find_file': find_file,
+    'find_model': find_model,
+    'find_package': find_package,
+}
 
 
 def check_description(path: str) -> tuple[str, ...]:

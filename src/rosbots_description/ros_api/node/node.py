@@ -81,7 +81,8 @@ class Options:
 
 
 def run(
-    options: Options, ros_arguments: Sequence[str] = (),
+    options: Options,
+    ros_arguments: Sequence[str] = (),
     make_engine: EngineFactory = make_engine,
 ) -> int:
     """Run the node until it is stopped; return the exit code.
@@ -102,8 +103,10 @@ def run(
         spec = read_world(options.world)
     try:
         # The sandbox forks this process before it has threads and connections.
-        with closing(World(make_engine=make_engine)) as world, \
-                CrashSandbox(world.engine, make_engine) as sandbox:
+        with (
+            closing(World(make_engine=make_engine)) as world,
+            CrashSandbox(world.engine, make_engine) as sandbox,
+        ):
             _wait_for_master()
             _take_name(node_name(NAME, ros_arguments), options.replace)
             guard_handshakes()

@@ -79,14 +79,18 @@ def _exports(package: str, attribute: str) -> list[str]:
 
 # model:// is looked up along GAZEBO_MODEL_PATH, the packages' exported paths and, as in Gazebo,
 # in the user's model folder.
-find_model = ModelSearch([
-    lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
-    lambda: exported_directories('gazebo_model_path'),
-    lambda: [os.path.expanduser('~/.gazebo/models')],
-])
+find_model = ModelSearch(
+    [
+        lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
+        lambda: exported_directories('gazebo_model_path'),
+        lambda: [os.path.expanduser('~/.gazebo/models')],
+    ]
+)
 
 # file:// with a relative path, and materials by their name.
-find_file = FileSearch([
-    lambda: path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')),
-    lambda: exported_directories('gazebo_media_path'),
-])
+find_file = FileSearch(
+    [
+        lambda: path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')),
+        lambda: exported_directories('gazebo_media_path'),
+    ]
+)

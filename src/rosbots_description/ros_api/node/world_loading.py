@@ -22,8 +22,9 @@ def read_world(name: str) -> WorldSpec:
     Raises:
         SimError: there is no such file, or it contains no world.
     """
-    return open_world(_find(name), find_model=find_model, find_package=find_package,
-                      find_file=find_file)
+    return open_world(
+        _find(name), find_model=find_model, find_package=find_package, find_file=find_file
+    )
 
 
 def own_worlds() -> list[str]:

@@ -15,8 +15,11 @@ from ...sim.controllers import DiffDriveController
 from .parameters import Parameter
 from .plugin_server import PluginReconfigure, Post
 
-MULTIPLIERS = ('left_wheel_radius_multiplier', 'right_wheel_radius_multiplier',
-               'wheel_separation_multiplier')
+MULTIPLIERS = (
+    'left_wheel_radius_multiplier',
+    'right_wheel_radius_multiplier',
+    'wheel_separation_multiplier',
+)
 RATE, TRANSFORM = 'publish_rate', 'enable_odom_tf'
 
 
@@ -27,13 +30,25 @@ class DiffDriveReconfigure(PluginReconfigure):
         """Advertise its settings in the namespace `name`."""
         self._controller, self._post = controller, post
         self._is_first = True
-        super().__init__((
-            *(Parameter(one, getattr(controller, one), 0.5, 1.5, 'factor of the wheels')
-              for one in MULTIPLIERS),
-            Parameter(RATE, float(controller.params.values[RATE]), 0.0, 2000.0, 'of odometry [Hz]'),
-            Parameter(TRANSFORM, controller.enable_odom_tf, False, True,
-                      'whether the transform to the base is published'),
-        ), name)
+        super().__init__(
+            (
+                *(
+                    Parameter(one, getattr(controller, one), 0.5, 1.5, 'factor of the wheels')
+                    for one in MULTIPLIERS
+                ),
+                Parameter(
+                    RATE, float(controller.params.values[RATE]), 0.0, 2000.0, 'of odometry [Hz]'
+                ),
+                Parameter(
+                    TRANSFORM,
+                    controller.enable_odom_tf,
+                    False,
+                    True,
+                    'whether the transform to the base is published',
+                ),
+            ),
+            name,
+        )
 
     def apply(self, config: Config) -> None:
         """Set them, but not for the library's first call: they are those of the controller."""

@@ -26,8 +26,13 @@ def parameters(gains: Gains) -> tuple[Parameter, ...]:
         Parameter('d', gains.d, -_MAX_D, _MAX_D, 'derivative gain'),
         Parameter('i_clamp_min', gains.i_min, -_MAX, 0.0, 'lower bound of the integral term'),
         Parameter('i_clamp_max', gains.i_max, 0.0, _MAX, 'upper bound of the integral term'),
-        Parameter('antiwindup', gains.antiwindup, False, True,
-                  'bound the integral itself, not only its term'),
+        Parameter(
+            'antiwindup',
+            gains.antiwindup,
+            False,
+            True,
+            'bound the integral itself, not only its term',
+        ),
     )
 
 
@@ -43,7 +48,13 @@ class GainsReconfigure(PluginReconfigure):
     def apply(self, config: Config) -> None:
         """Set the gains, but not for the library's first call: they are those of the PID."""
         if not self._is_first:
-            gains = Gains(config['p'], config['i'], config['d'], config['i_clamp_max'],
-                          config['i_clamp_min'], config['antiwindup'])
+            gains = Gains(
+                config['p'],
+                config['i'],
+                config['d'],
+                config['i_clamp_max'],
+                config['i_clamp_min'],
+                config['antiwindup'],
+            )
             self._post(lambda: setattr(self._pid, 'gains', gains))
         self._is_first = False

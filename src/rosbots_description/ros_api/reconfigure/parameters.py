@@ -25,11 +25,19 @@ def description(parameters: Sequence[Parameter]) -> SimpleNamespace:
         min={p.name: p.minimum for p in parameters},
         max={p.name: p.maximum for p in parameters},
         config_description={
-            'name': 'Default', 'type': '', 'id': 0, 'parent': 0, 'state': True, 'groups': [],
+            'name': 'Default',
+            'type': '',
+            'id': 0,
+            'parent': 0,
+            'state': True,
+            'groups': [],
             'parameters': [
                 {
-                    'name': p.name, 'type': _TYPES[type(p.default)], 'level': _EVERYTHING,
-                    'description': p.description, 'edit_method': '',
+                    'name': p.name,
+                    'type': _TYPES[type(p.default)],
+                    'level': _EVERYTHING,
+                    'description': p.description,
+                    'edit_method': '',
                 }
                 for p in parameters
             ],

@@ -19,8 +19,9 @@ from .plugin_server import PluginReconfigure, Post
 
 logger = logging.getLogger(__name__)
 
-LATERAL, LONGITUDINAL = (f'slip_compliance_unitless_{direction}'
-                         for direction in ('lateral', 'longitudinal'))
+LATERAL, LONGITUDINAL = (
+    f'slip_compliance_unitless_{direction}' for direction in ('lateral', 'longitudinal')
+)
 PARAMETERS = tuple(
     Parameter(name, -1.0, -1.0, 20.0, 'slip over friction, of all wheels; below 0: as described')
     for name in (LATERAL, LONGITUDINAL)
@@ -40,6 +41,11 @@ class SlipReconfigure(PluginReconfigure):
         given = {'lateral': config[LATERAL], 'longitudinal': config[LONGITUDINAL]}
         for direction, value in given.items():
             if value >= 0.0:
-                logger.info('Reconfigure request for the gazebo ros wheel_slip: %s. New %s slip '
-                            'compliance: %.3e', self._plugin.model.name, direction, value)
+                logger.info(
+                    'Reconfigure request for the gazebo ros wheel_slip: %s. New %s slip '
+                    'compliance: %.3e',
+                    self._plugin.model.name,
+                    direction,
+                    value,
+                )
         self._post(lambda: self._plugin.set_compliance(**given))

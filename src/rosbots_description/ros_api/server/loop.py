@@ -99,8 +99,9 @@ class Loop:
 
         """
         future: Future[Result] = Future()
-        threading.Thread(target=copy_context().run, args=(_execute, future, work), name='beside',
-                         daemon=True).start()
+        threading.Thread(
+            target=copy_context().run, args=(_execute, future, work), name='beside', daemon=True
+        ).start()
         either: list[Future[Any]] = [future, self._ended]
         wait(either, return_when=FIRST_COMPLETED)
         if not future.done():

@@ -91,7 +91,8 @@ class StaticFrames:
 
     def _merge(self) -> None:
         self.parents = {
-            child: edge for transforms in self._by_node.values()
+            child: edge
+            for transforms in self._by_node.values()
             for child, edge in transforms.items()
         }
         self.nodes = frozenset(self._by_node)

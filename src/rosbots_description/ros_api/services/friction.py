@@ -22,8 +22,12 @@ def get_friction(server: Server, request: GetFrictionRequest) -> GetFrictionResp
     found = collisions_named(server.world, request.name)
     surfaces = [frame.spec.surface for frame in found]
     return GetFrictionResponse(
-        True, 'GetFriction: got friction', [frame.scoped_name for frame in found],
-        [surface.mu for surface in surfaces], [surface.mu2 for surface in surfaces])
+        True,
+        'GetFriction: got friction',
+        [frame.scoped_name for frame in found],
+        [surface.mu for surface in surfaces],
+        [surface.mu2 for surface in surfaces],
+    )
 
 
 @service('set_friction', SetFriction, table=EXTENSIONS)

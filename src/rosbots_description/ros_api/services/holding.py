@@ -16,8 +16,7 @@ def hold_model(server: Server, request: HoldModelRequest) -> HoldModelResponse:
     """Hold a model at rest at a pose; without a duration, leave it there."""
     require_finite(request)
     if not 0.0 <= request.duration <= MAX_DURATION:
-        raise RequestError(
-            f'duration is {request.duration:g}; it must be 0 to {MAX_DURATION:g} s')
+        raise RequestError(f'duration is {request.duration:g}; it must be 0 to {MAX_DURATION:g} s')
     model = server.world.models.get(request.model_name)
     if model is None:
         return refuse(HoldModelResponse(), 'HoldModel: model does not exist')

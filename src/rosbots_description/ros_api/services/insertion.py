@@ -43,12 +43,19 @@ def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertMod
         raise RequestError('joint_names and joint_positions have different lengths')
     wanted = request.model_name or own_name(request.model_xml, 'model_xml')
     name = server.loop.call(lambda: free_name(server.world, wanted))
-    prepared = read_description(server, SpawnModelRequest(
-        name, request.model_xml, request.robot_namespace, request.initial_pose, ''))
+    prepared = read_description(
+        server,
+        SpawnModelRequest(
+            name, request.model_xml, request.robot_namespace, request.initial_pose, ''
+        ),
+    )
     if isinstance(prepared, SpawnModelResponse):
         return _response(prepared)
-    box = (box_around(prepared.model.spec, prepared.pose)
-           if isinstance(prepared, PreparedModel) else None)
+    box = (
+        box_around(prepared.model.spec, prepared.pose)
+        if isinstance(prepared, PreparedModel)
+        else None
+    )
     return _Insertion(prepared, box, request)
 
 
@@ -59,14 +66,20 @@ def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
     # Its name was free before it was prepared, perhaps at the same time as another of that name.
     prepared = replace(prepared, name=free_name(server.world, prepared.name))
     if isinstance(prepared, PreparedModel) and box is not None:
-        prepared = replace(prepared, pose=placed(
-            server.world, prepared.pose, box, request.on_ground, request.beside))
+        prepared = replace(
+            prepared,
+            pose=placed(server.world, prepared.pose, box, request.on_ground, request.beside),
+        )
     response = spawn_model(server, prepared)
     if not response.success:
         return _response(response)
     if request.joint_names:
-        set_model_configuration(server, SetModelConfigurationRequest(
-            prepared.name, '', request.joint_names, request.joint_positions))
+        set_model_configuration(
+            server,
+            SetModelConfigurationRequest(
+                prepared.name, '', request.joint_names, request.joint_positions
+            ),
+        )
     return _response(response, prepared.name)
 
 
@@ -88,9 +101,7 @@ def get_model_description(
 
 
 @service('get_model_library', GetModelLibrary, on_loop=False, table=EXTENSIONS)
-def get_model_library(
-    server: Server, _request: GetModelLibraryRequest
-) -> GetModelLibraryResponse:
+def get_model_library(server: Server, _request: GetModelLibraryRequest) -> GetModelLibraryResponse:
     """Return the names of the models along the model path."""
     return GetModelLibraryResponse(model_names(server.find_model))
 

@@ -71,7 +71,8 @@ def apply_joint_effort(
     if joint is not None:
         start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
         server.world.external_forces.add(
-            joint, lambda: joint.apply_effort(request.effort), start, duration)
+            joint, lambda: joint.apply_effort(request.effort), start, duration
+        )
     elif not _is_fixed(server.world, request.joint_name):
         return refuse(ApplyJointEffortResponse(), 'ApplyJointEffort: joint not found')
     return ApplyJointEffortResponse(True, 'ApplyJointEffort: effort set')
@@ -101,7 +102,9 @@ def _change(joint: Joint, config: ODEJointProperties) -> None:
     velocity, effort = changed_motor(joint.spec.name, joint.motor, config)
     changes = {}
     for field, values in (
-        ('damping', config.damping), ('lower', config.loStop), ('upper', config.hiStop)
+        ('damping', config.damping),
+        ('lower', config.loStop),
+        ('upper', config.hiStop),
     ):
         with contextlib.suppress(IndexError):
             changes[field] = values[0]
@@ -147,10 +150,9 @@ def changed_spec(spec: JointSpec, changes: dict[str, float]) -> JointSpec:
     changed = replace(spec, **fields)
     lower, upper = changed.lower, changed.upper
     if lower is not None and upper is not None and lower > upper:
-        raise RequestError(
-            f"loStop {lower:g} of joint '{spec.name}' is above hiStop {upper:g}"
-        )
+        raise RequestError(f"loStop {lower:g} of joint '{spec.name}' is above hiStop {upper:g}")
     if changed.damping < 0.0:
-        raise RequestError(f"damping of joint '{spec.name}' is {changed.damping:g}; it must not "
-                           'be negative')
+        raise RequestError(
+            f"damping of joint '{spec.name}' is {changed.damping:g}; it must not be negative"
+        )
     return changed

@@ -62,9 +62,9 @@ def set_model_state(server: Server, request: SetModelStateRequest) -> SetModelSt
     model.set_pose(compose(frame, read_pose(state.pose)))
     if not model.static:
         twist = read_twist(state.twist)
-        model.set_twist(Twist(
-            rotate(frame.orientation, twist.linear), rotate(frame.orientation, twist.angular)
-        ))
+        model.set_twist(
+            Twist(rotate(frame.orientation, twist.linear), rotate(frame.orientation, twist.angular))
+        )
     return SetModelStateResponse(True, 'SetModelState: set model state done')
 
 

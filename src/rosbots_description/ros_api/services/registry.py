@@ -113,7 +113,8 @@ def respond(server: Server, entry: Service, request: Message) -> Message:
     if entry.registers and not server.registrar.wait(REGISTRATION):
         logger.warning(
             '%s: the ROS master has not registered all topics within %g s; it will be done later',
-            entry.name, REGISTRATION,
+            entry.name,
+            REGISTRATION,
         )
     return response
 

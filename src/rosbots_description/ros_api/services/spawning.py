@@ -79,14 +79,18 @@ def read_description(
     if light is not None:
         # The frame must exist although, as in Gazebo, a light has the pose in its description.
         return server.loop.call(lambda: _frame_refusal(server, request.reference_frame)) or light
-    return _prepare(server, request, lambda: load_sdf(
-        request.model_xml,
-        request.model_name,
-        robot_namespace=request.robot_namespace,
-        find_model=server.find_model,
-        find_package=server.find_package,
-        find_file=server.find_file,
-    ))
+    return _prepare(
+        server,
+        request,
+        lambda: load_sdf(
+            request.model_xml,
+            request.model_name,
+            robot_namespace=request.robot_namespace,
+            find_model=server.find_model,
+            find_package=server.find_package,
+            find_file=server.find_file,
+        ),
+    )
 
 
 def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, Pose]:

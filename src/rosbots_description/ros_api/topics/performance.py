@@ -65,9 +65,14 @@ class SensorRates:
         found = []
         for sensor in sensors:
             sample = self._samples[sensor] = _sample(sensor, before.get(sensor, _Sample()), wall)
-            found.append(SensorPerformanceMetric(
-                f'{world}::{sensor.scoped_name}', sample.sim_rate, sample.real_rate,
-                sample.real_rate if sensor.spec.type in _WITH_FPS else -1.0))
+            found.append(
+                SensorPerformanceMetric(
+                    f'{world}::{sensor.scoped_name}',
+                    sample.sim_rate,
+                    sample.real_rate,
+                    sample.real_rate if sensor.spec.type in _WITH_FPS else -1.0,
+                )
+            )
         return found
 
 
@@ -97,8 +102,10 @@ def advertise_performance(server: Server) -> None:
         message = PerformanceMetrics(real_time_factor=factor.update(clock.now, now))
         models = server.world.models.values()
         message.sensors = rates.update(
-            server.world.name, (sensor for model in models
-            for sensor in model.sensors.values()), now)
+            server.world.name,
+            (sensor for model in models for sensor in model.sensors.values()),
+            now,
+        )
         message.header.stamp = stamp(clock.now_ns)
         if publisher.get_num_connections() > 0:
             publisher.publish(message)

@@ -42,7 +42,7 @@ class StatesTopic(Topic, Hook):
         while len(message.pose) < len(entities):
             message.pose.append(Pose())
             message.twist.append(Twist())
-        del message.pose[len(entities):], message.twist[len(entities):]
+        del message.pose[len(entities) :], message.twist[len(entities) :]
         for entity, pose_message, twist_message in zip(
             entities, message.pose, message.twist, strict=True
         ):

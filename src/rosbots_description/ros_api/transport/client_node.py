@@ -44,12 +44,12 @@ def start_node(
     require_address()
     if not is_master_running(f'/{name}'):
         # Without a node, logging writes to standard error.
-        logger.warning('No ROS master at %s. Start roscore; waiting for it.',
-                       rosgraph.get_master_uri())
+        logger.warning(
+            'No ROS master at %s. Start roscore; waiting for it.', rosgraph.get_master_uri()
+        )
         while not is_master_running(f'/{name}'):
             time.sleep(_RETRY)
-    init_node(name, arguments, anonymous=anonymous, disable_signals=True,
-              disable_rostime=wall_time)
+    init_node(name, arguments, anonymous=anonymous, disable_signals=True, disable_rostime=wall_time)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _shut_down)
 

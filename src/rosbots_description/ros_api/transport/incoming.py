@@ -90,8 +90,7 @@ def caller_waits() -> bool:
     """Tell whether the caller of this thread's request still waits for the answer."""
     connection = _connection.get()
     try:
-        return not connection or bool(
-            connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT))
+        return not connection or bool(connection.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT))
     except BlockingIOError:
         return True
     except OSError:

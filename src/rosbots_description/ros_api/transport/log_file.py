@@ -77,5 +77,7 @@ class _WriteErrorReporter:
         elif not self._seen:
             self._seen = True
             # Logging it would recurse.
-            sys.stderr.write(f'[WARN] [{time.time():f}]: log file {self._path} cannot be written '
-                             f'({error.strerror}); messages may be missing, free some space\n')
+            sys.stderr.write(
+                f'[WARN] [{time.time():f}]: log file {self._path} cannot be written '
+                f'({error.strerror}); messages may be missing, free some space\n'
+            )

@@ -56,17 +56,22 @@ def is_master_running(name: str) -> bool:
         except OSError:
             return False
         try:
-            connection.request('POST', '/RPC2', dumps((name,), 'getUri'),
-                               {'Content-Type': 'text/xml'})
+            connection.request(
+                'POST', '/RPC2', dumps((name,), 'getUri'), {'Content-Type': 'text/xml'}
+            )
             loads(connection.getresponse().read(_LONGEST).decode(errors='replace'))
         except ConnectionError:  # it is ending
             return False
         except TimeoutError:
-            raise AddressError(f'what listens at ROS_MASTER_URI, {address}, has not answered for '
-                               f'{_PATIENCE:.0f} s; is it a ROS master?') from None
+            raise AddressError(
+                f'what listens at ROS_MASTER_URI, {address}, has not answered for '
+                f'{_PATIENCE:.0f} s; is it a ROS master?'
+            ) from None
         except (OSError, HTTPException, XmlRpcError, ExpatError, ValueError, TypeError):
-            raise AddressError(f'what answers at ROS_MASTER_URI, {address}, is not a ROS master; '
-                               'roscore starts one at http://localhost:11311') from None
+            raise AddressError(
+                f'what answers at ROS_MASTER_URI, {address}, is not a ROS master; '
+                'roscore starts one at http://localhost:11311'
+            ) from None
     return True
 
 
@@ -116,8 +121,7 @@ def subscribers(topic: str, publishing: str) -> tuple[set[str], set[str]]:
     Args:
         publishing: another topic, whose publishers are returned as the second set.
     """
-    publishers, readers, _ = retry_call(
-        lambda: rosgraph.Master(rospy.get_name()).getSystemState())
+    publishers, readers, _ = retry_call(lambda: rosgraph.Master(rospy.get_name()).getSystemState())
     return _nodes(readers, topic), _nodes(publishers, publishing)
 
 

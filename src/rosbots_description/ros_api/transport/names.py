@@ -52,8 +52,9 @@ def search_parameter(namespace: str, parameter: str) -> str | None:
     namespace = rospy.resolve_name(namespace).rstrip('/')
     try:
         # The master searches upward from the caller's name.
-        return cast(str, retry_call(
-            lambda: rosgraph.Master(f'{namespace}/plugin').searchParam(parameter)))
+        return cast(
+            str, retry_call(lambda: rosgraph.Master(f'{namespace}/plugin').searchParam(parameter))
+        )
     except rosgraph.MasterError:
         return None
 

@@ -56,10 +56,11 @@ def close_pollers() -> None:
 
 
 def _and_its_poller(
-    close: Callable[[rospy.topics._TopicImpl], None]
+    close: Callable[[rospy.topics._TopicImpl], None],
 ) -> Callable[[rospy.topics._TopicImpl], None]:
     @wraps(close)
     def close_both(topic: rospy.topics._TopicImpl) -> None:
         close(topic)
         topic.connection_poll.close()
+
     return close_both

@@ -34,12 +34,18 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     _end_at_once()
     tolerate_full_disk()
     if reason:
-        rospy.logwarn('log file %s cannot be written (%s), so there is none; set ROS_LOG_DIR to a '
-                      'writable folder', path, reason)
+        rospy.logwarn(
+            'log file %s cannot be written (%s), so there is none; set ROS_LOG_DIR to a '
+            'writable folder',
+            path,
+            reason,
+        )
     if lost_name:
-        rospy.logwarn('the hostname %s cannot be resolved, so only programs on this machine can '
-                      'reach this node; add it to /etc/hosts, or set ROS_HOSTNAME or ROS_IP',
-                      lost_name)
+        rospy.logwarn(
+            'the hostname %s cannot be resolved, so only programs on this machine can '
+            'reach this node; add it to /etc/hosts, or set ROS_HOSTNAME or ROS_IP',
+            lost_name,
+        )
 
 
 def is_node() -> bool:
@@ -83,7 +89,8 @@ def _end_at_once() -> None:
     """
     # Collected now: rospy clears the list before the hook runs.
     conditions = [
-        listener.cond for listener in get_registration_listeners().listeners
+        listener.cond
+        for listener in get_registration_listeners().listeners
         if hasattr(listener, 'cond')
     ]
 

@@ -21,8 +21,11 @@ def advertise_contacts(server: Server) -> None:
 
     def show() -> None:
         if topic.get_num_connections() > 0:
-            topic.publish(contacts_message(
-                ShownContact(one.position, one.normal, one.force)
-                for one in server.world.engine.contacts()))
+            topic.publish(
+                contacts_message(
+                    ShownContact(one.position, one.normal, one.force)
+                    for one in server.world.engine.contacts()
+                )
+            )
 
     server.loop.every(PERIOD, show)

@@ -32,8 +32,9 @@ class ShownFrames:
     def changes(self) -> list[TransformStamped]:
         """Return the frames of the models that moved since the last call."""
         poses = {name: model.pose for name, model in self._world.models.items()}
-        moved = [_transform(name, pose) for name, pose in poses.items()
-                 if self._shown.get(name) != pose]
+        moved = [
+            _transform(name, pose) for name, pose in poses.items() if self._shown.get(name) != pose
+        ]
         self._shown = poses
         return moved
 

@@ -125,8 +125,10 @@ class SunlitMarkers(ShownMarkers):
         return future.result()
 
     def _make_views(self, model: Model) -> list[LinkView]:
-        return [LinkView(link, [self._meshes.file(visual) for visual in link.spec.visuals])
-                for link in _shown_links(model)]
+        return [
+            LinkView(link, [self._meshes.file(visual) for visual in link.spec.visuals])
+            for link in _shown_links(model)
+        ]
 
 
 def _shown_links(model: Model) -> list[Link]:

@@ -32,7 +32,8 @@ def model_omissions(name: str) -> list[str]:
     service = rospy.resolve_name('gazebo/get_model_omissions')
     try:
         answer = interruptibly(
-            lambda: rospy.ServiceProxy(service, GetModelOmissions)(name), TIMEOUT)
+            lambda: rospy.ServiceProxy(service, GetModelOmissions)(name), TIMEOUT
+        )
     except (rospy.ServiceException, rospy.ROSException) as error:
         raise SimError(f'{service}: {error}') from error
     return list(answer.omissions)

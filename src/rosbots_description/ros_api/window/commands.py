@@ -26,8 +26,9 @@ class Commands(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no t
             if self._publisher.get_num_connections():
                 self._pass_on(self._publisher.publish)
 
-    def peer_subscribe(self, _topic: str, _publish: Callable[[Any], None],
-                       peer_publish: Callable[[Any], None]) -> None:
+    def peer_subscribe(
+        self, _topic: str, _publish: Callable[[Any], None], peer_publish: Callable[[Any], None]
+    ) -> None:
         """Publish what has waited; rospy calls it when a subscriber has connected."""
         with self._lock:
             self._pass_on(peer_publish)

@@ -23,8 +23,12 @@ class RosContacts:
         """Subscribe; the callback is called from a thread of its own."""
         self.close()
         self._subscriber = rospy.Subscriber(
-            'gazebo/view/contacts', Float64MultiArray, lambda m: show(read_contacts(m)),
-            queue_size=1, tcp_nodelay=True)
+            'gazebo/view/contacts',
+            Float64MultiArray,
+            lambda m: show(read_contacts(m)),
+            queue_size=1,
+            tcp_nodelay=True,
+        )
 
     def close(self) -> None:
         """Unsubscribe: the simulator computes no contacts for this window any more."""

@@ -24,8 +24,9 @@ class Feed:
         self._period = period
         self._lock = threading.Lock()
         self._waiting: deque[tuple[float, Any]] = deque(maxlen=kept)
-        self._subscriber = rospy.Subscriber(topic, kind, self._keep, queue_size=kept,
-                                            buff_size=BUFFER)
+        self._subscriber = rospy.Subscriber(
+            topic, kind, self._keep, queue_size=kept, buff_size=BUFFER
+        )
 
     def take(self) -> list[tuple[float, Any]]:
         """Return what came since the last call: times of arrival [s, monotonic], and messages."""
@@ -41,7 +42,10 @@ class Feed:
     def _keep(self, message: Any) -> None:  # noqa: ANN401  of the topic's type
         now = time.monotonic()
         with self._lock:
-            if self._waiting and self._period and (
-                    now // self._period == self._waiting[-1][0] // self._period):
+            if (
+                self._waiting
+                and self._period
+                and (now // self._period == self._waiting[-1][0] // self._period)
+            ):
                 self._waiting.pop()
             self._waiting.append((now, message))

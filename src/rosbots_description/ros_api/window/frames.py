@@ -62,8 +62,9 @@ class FrameFinder:
 
     def _listen(self) -> None:
         if not self._subscribers:
-            self._subscribers = [rospy.Subscriber(topic, TFMessage, self._hear, self._parents)
-                                 for topic in TOPICS]
+            self._subscribers = [
+                rospy.Subscriber(topic, TFMessage, self._hear, self._parents) for topic in TOPICS
+            ]
 
     def _rest(self) -> None:
         for subscriber in self._subscribers:
@@ -74,7 +75,9 @@ class FrameFinder:
     def _hear(message: TFMessage, parents: dict[str, tuple[str, Transform]]) -> None:
         for one in message.transforms:
             parents[one.child_frame_id.lstrip('/')] = (
-                one.header.frame_id.lstrip('/'), one.transform)
+                one.header.frame_id.lstrip('/'),
+                one.transform,
+            )
 
     def _ways(self, frame: str) -> Iterator[tuple[str, Pose]]:
         """Yield a frame and those above it, the nearest first, with its pose in each."""

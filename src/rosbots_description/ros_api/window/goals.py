@@ -20,7 +20,7 @@ from .frames import FrameFinder
 from .topic_graph import TopicGraph
 
 # As RViz sends it: standard deviations of 0.5 m and 15 degrees.
-SPREAD, TURN = 0.5 ** 2, math.radians(15.0) ** 2  # [m^2], [rad^2]
+SPREAD, TURN = 0.5**2, math.radians(15.0) ** 2  # [m^2], [rad^2]
 X, Y, YAW = 0, 7, 35  # in the covariance, of (x, y, z, roll, pitch, yaw)
 
 
@@ -70,8 +70,14 @@ class RosGoals:
         topics = [topic for topic, other in self._graph.subscribed().items() if other == kind._type]
         return sorted(topics, key=lambda topic: not topic.endswith(name))
 
-    def _send(self, topic: str, message: Any, frame: str, field: PoseMessage,  # noqa: ANN401
-              pose: Pose) -> None:
+    def _send(
+        self,
+        topic: str,
+        message: Any,
+        frame: str,
+        field: PoseMessage,  # noqa: ANN401
+        pose: Pose,
+    ) -> None:
         message.header.frame_id, message.header.stamp = frame, rospy.Time.now()
         fill_pose(field, pose)
         if topic not in self._commands:

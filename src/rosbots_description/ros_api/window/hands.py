@@ -29,9 +29,17 @@ class RosHands:
         """Spawn a model or light under a name that is free; return the name."""
         joints = dict(text.joints)
         name: str = call(
-            'insert_model', InsertModel, SPAWN_TIMEOUT, model_name=text.name, model_xml=text.xml,
-            robot_namespace=text.namespace, initial_pose=_message(text.pose), on_ground=on_ground,
-            beside=beside, joint_names=list(joints), joint_positions=list(joints.values()),
+            'insert_model',
+            InsertModel,
+            SPAWN_TIMEOUT,
+            model_name=text.name,
+            model_xml=text.xml,
+            robot_namespace=text.namespace,
+            initial_pose=_message(text.pose),
+            on_ground=on_ground,
+            beside=beside,
+            joint_names=list(joints),
+            joint_positions=list(joints.values()),
         ).model_name
         return name
 
@@ -46,8 +54,12 @@ class RosHands:
     def describe(self, name: str) -> ModelText:
         """Return what is needed to spawn a model again as it is."""
         found = call('get_model_description', GetModelDescription, model_name=name)
-        return ModelText(name, found.model_xml, pose=read_pose(found.pose), joints=dict(
-            zip(found.joint_names, found.joint_positions, strict=True)))
+        return ModelText(
+            name,
+            found.model_xml,
+            pose=read_pose(found.pose),
+            joints=dict(zip(found.joint_names, found.joint_positions, strict=True)),
+        )
 
     def omissions(self, name: str) -> list[str]:
         """Return the parts that a model was spawned without; none of a light."""
@@ -55,22 +67,30 @@ class RosHands:
 
     def move(self, name: str, pose: Pose) -> None:
         """Move a model, at rest, so that its frame is at a pose in the world."""
-        call('set_model_state', SetModelState,
-             model_state=ModelState(model_name=name, pose=_message(pose)))
+        call(
+            'set_model_state',
+            SetModelState,
+            model_state=ModelState(model_name=name, pose=_message(pose)),
+        )
 
     def hold(self, name: str, pose: Pose, duration: float) -> None:
         """Hold a model at rest at a pose for a time [s, wall]; zero: let it go there."""
         call('hold_model', HoldModel, model_name=name, pose=_message(pose), duration=duration)
 
-    def push(self, link: str, force: Vector, torque: Vector, duration: float,
-             own_axes: bool) -> None:
+    def push(
+        self, link: str, force: Vector, torque: Vector, duration: float, own_axes: bool
+    ) -> None:
         """Apply a force [N] at the centre of mass of a link, and a torque [N m]."""
         if not 0.0 <= duration <= MAX_DURATION:  # neither for NaN
             raise SimError(f'a push lasts 0 to {MAX_DURATION:g} s, not {duration:g} s')
-        call('apply_body_wrench', ApplyBodyWrench, body_name=link,
-             reference_frame=link if own_axes else '',
-             wrench=Wrench(Vector3(*force), Vector3(*torque)),
-             duration=rospy.Duration.from_sec(duration))
+        call(
+            'apply_body_wrench',
+            ApplyBodyWrench,
+            body_name=link,
+            reference_frame=link if own_axes else '',
+            wrench=Wrench(Vector3(*force), Vector3(*torque)),
+            duration=rospy.Duration.from_sec(duration),
+        )
 
 
 def _message(pose: Pose) -> PoseMessage:

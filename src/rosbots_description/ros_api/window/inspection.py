@@ -21,15 +21,17 @@ _MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 class RosInspection:
     """Reads and changes a model, or one of its links; each raises SimError if it is refused."""
 
-    def state(self, model: str, link: str | None,
-              patience: float | None = None) -> tuple[Pose, Twist]:
+    def state(
+        self, model: str, link: str | None, patience: float | None = None
+    ) -> tuple[Pose, Twist]:
         """Return pose and velocity in the world; `patience` is for the answer [s, wall]."""
         patience = TIMEOUT if patience is None else patience
         if link is None:
             answer = call('get_model_state', GetModelState, patience, model_name=model)
             return read_pose(answer.pose), read_twist(answer.twist)
-        state = call('get_link_state', GetLinkState, patience,
-                     link_name=f'{model}::{link}').link_state
+        state = call(
+            'get_link_state', GetLinkState, patience, link_name=f'{model}::{link}'
+        ).link_state
         return read_pose(state.pose), read_twist(state.twist)
 
     def omissions(self, model: str) -> list[str]:
@@ -38,8 +40,11 @@ class RosInspection:
 
     def set_state(self, model: str, link: str | None, pose: Pose, twist: Twist) -> None:
         """Set pose and velocity in the world."""
-        state = (ModelState(model_name=model) if link is None
-                 else LinkState(link_name=f'{model}::{link}'))
+        state = (
+            ModelState(model_name=model)
+            if link is None
+            else LinkState(link_name=f'{model}::{link}')
+        )
         fill_pose(state.pose, pose)
         fill_twist(state.twist, twist)
         if link is None:
@@ -52,9 +57,15 @@ class RosInspection:
         name = f'{model}::{link}'
         now = call('get_link_properties', GetLinkProperties, link_name=name)
         factor = mass / now.mass if now.mass else 1.0
-        call('set_link_properties', SetLinkProperties, link_name=name, com=now.com,
-             gravity_mode=gravity, mass=mass,
-             **{moment: factor * getattr(now, moment) for moment in _MOMENTS})
+        call(
+            'set_link_properties',
+            SetLinkProperties,
+            link_name=name,
+            com=now.com,
+            gravity_mode=gravity,
+            mass=mass,
+            **{moment: factor * getattr(now, moment) for moment in _MOMENTS},
+        )
 
     def set_friction(self, name: str, mu: float, mu2: float) -> None:
         """Set the friction coefficients of a collision, or of all in a model or link."""

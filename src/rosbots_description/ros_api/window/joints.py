@@ -42,13 +42,19 @@ def array(_joints: Sequence[str], values: Sequence[float]) -> Float64MultiArray:
 
 def trajectory(joints: Sequence[str], values: Sequence[float]) -> JointTrajectory:
     """Return a motion of joints to positions, that begins at once."""
-    return JointTrajectory(joint_names=joints, points=[
-        JointTrajectoryPoint(positions=values, time_from_start=MOTION)])
+    return JointTrajectory(
+        joint_names=joints, points=[JointTrajectoryPoint(positions=values, time_from_start=MOTION)]
+    )
 
 
 COMMANDS: Mapping[str, tuple[type, Callable[[Sequence[str], Sequence[float]], object]]] = {
-    kind._type: (kind, message) for kind, message in (
-        (Float64, number), (Float64MultiArray, array), (JointTrajectory, trajectory))}
+    kind._type: (kind, message)
+    for kind, message in (
+        (Float64, number),
+        (Float64MultiArray, array),
+        (JointTrajectory, trajectory),
+    )
+}
 
 
 class RosJoints:
@@ -67,23 +73,37 @@ class RosJoints:
 
     def set_position(self, model: str, joint: str, position: float) -> None:
         """Move a joint there [rad or m] at once, whatever it meets."""
-        call('set_model_configuration', SetModelConfiguration, model_name=model,
-             joint_names=[joint], joint_positions=[position])
+        call(
+            'set_model_configuration',
+            SetModelConfiguration,
+            model_name=model,
+            joint_names=[joint],
+            joint_positions=[position],
+        )
 
     def set_velocity(self, model: str, joint: str, velocity: float, effort: float) -> None:
         """Let a motor keep a velocity [rad/s or m/s] with an effort of at most so much [N m or N].
 
         No effort switches it off.
         """
-        call('set_joint_properties', SetJointProperties, joint_name=f'{model}::{joint}',
-             ode_joint_config=ODEJointProperties(vel=[velocity], fmax=[effort]))
+        call(
+            'set_joint_properties',
+            SetJointProperties,
+            joint_name=f'{model}::{joint}',
+            ode_joint_config=ODEJointProperties(vel=[velocity], fmax=[effort]),
+        )
 
     def set_effort(self, model: str, joint: str, effort: float) -> None:
         """Apply an effort [N m or N] from now on, in place of any on a joint of that name."""
         call('clear_joint_forces', JointRequest, joint_name=joint)
         if effort:
-            call('apply_joint_effort', ApplyJointEffort, joint_name=f'{model}::{joint}',
-                 effort=effort, duration=ENDLESS)
+            call(
+                'apply_joint_effort',
+                ApplyJointEffort,
+                joint_name=f'{model}::{joint}',
+                effort=effort,
+                duration=ENDLESS,
+            )
 
     def command_topics(self) -> list[CommandTopic]:
         """Return the topics of commands that other nodes subscribe to.
@@ -93,13 +113,16 @@ class RosJoints:
         known = self._offered
         self._offered = {
             (name, kind): known[name, kind] if (name, kind) in known else _topic(name, kind)
-            for name, kind in self._topics.subscribed().items() if kind in COMMANDS}
+            for name, kind in self._topics.subscribed().items()
+            if kind in COMMANDS
+        }
         return [topic for topic in self._offered.values() if topic]
 
     def command(self, topic: CommandTopic, values: Sequence[float]) -> None:
         """Publish values, latched, so that they arrive also if they are the first."""
-        kind, message = COMMANDS[next(
-            (kind for (name, kind) in self._offered if name == topic.name), Float64._type)]
+        kind, message = COMMANDS[
+            next((kind for (name, kind) in self._offered if name == topic.name), Float64._type)
+        ]
         publisher = self._publishers.get(topic.name)
         if publisher is None or publisher.data_class is not kind:
             if publisher is not None:
@@ -122,4 +145,5 @@ def _topic(name: str, kind: str) -> CommandTopic | None:
         return None
     controller = str(parameters.get('type', ''))
     return CommandTopic(
-        name, tuple(map(str, joints)), any(word in controller for word in POSITIONS))
+        name, tuple(map(str, joints)), any(word in controller for word in POSITIONS)
+    )

@@ -32,8 +32,10 @@ class RosLibrary:
         """
         try:
             names = rospy.get_param_names()
-            self._urdf = {name: self._urdf[name] if name in self._urdf else _holds_urdf(name)
-                          for name in names}
+            self._urdf = {
+                name: self._urdf[name] if name in self._urdf else _holds_urdf(name)
+                for name in names
+            }
         except NO_MASTER:
             return []
         return sorted(name for name, holds in self._urdf.items() if holds)

@@ -30,5 +30,9 @@ class RosMaps(RosReadings):
         x, y = grid.origin
         return ShownReading(
             words=f'{columns} x {rows} cells, {grid.occupied.sum()} of them occupied',
-            grid=ShownGrid(map_cells(grid.occupied.astype(np.int8) * OCCUPIED), grid.resolution,
-                           Pose((x, y, 0.0))))
+            grid=ShownGrid(
+                map_cells(grid.occupied.astype(np.int8) * OCCUPIED),
+                grid.resolution,
+                Pose((x, y, 0.0)),
+            ),
+        )

@@ -25,8 +25,7 @@ class RosReadings:
 
     def offered(self) -> dict[str, str]:
         """Return the types of the topics of these types that other nodes publish, by name."""
-        return {name: kind for name, kind in self._graph.published().items()
-                if kind in self._types}
+        return {name: kind for name, kind in self._graph.published().items() if kind in self._types}
 
     def open(self, topic: str, kind: str) -> None:
         """Subscribe to a topic of one of these types."""

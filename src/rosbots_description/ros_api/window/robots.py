@@ -19,8 +19,7 @@ class RosRobots:
 
     def drive_topics(self) -> list[str]:
         """Return the topics of velocity commands that other nodes subscribe to; [] if unknown."""
-        return [name for name, kind in self._topics.subscribed().items()
-                if kind == Twist._type]
+        return [name for name, kind in self._topics.subscribed().items() if kind == Twist._type]
 
     def drive(self, topic: str, forward: float, left: float) -> None:
         """Publish a velocity command: forward [m/s], and turning left [rad/s]."""

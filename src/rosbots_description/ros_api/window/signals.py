@@ -45,7 +45,8 @@ class RosSignals:
         if not topic:
             raise SimError(
                 f"No topic of '{curve}' is published; a curve is one with a field, such as "
-                '/odom/twist/twist/linear/x.')
+                '/odom/twist/twist/linear/x.'
+            )
         kind = _class(topics[topic])
         if kind is None:
             raise SimError(f'This machine has no messages {topics[topic]}, those of {topic}.')
@@ -66,9 +67,10 @@ class RosSignals:
         [s, monotonic]; and the number.
         """
         taken = {topic: feed.take() for topic, feed in self._feeds.items()}
-        return {curve: [(_stamp(message), arrival, get(message))
-                        for arrival, message in taken[topic]]
-                for curve, (topic, get) in self._curves.items()}
+        return {
+            curve: [(_stamp(message), arrival, get(message)) for arrival, message in taken[topic]]
+            for curve, (topic, get) in self._curves.items()
+        }
 
 
 def _class(kind: str) -> type[Any] | None:

@@ -36,6 +36,11 @@ class RosTimeControl:
     def set_speed(self, factor: float) -> None:
         """Set the target real-time factor; 0: as fast as possible."""
         now = call('get_physics_properties', GetPhysicsProperties)
-        call('set_physics_properties', SetPhysicsProperties, time_step=now.time_step,
-             max_update_rate=factor / now.time_step, gravity=now.gravity,
-             ode_config=now.ode_config)
+        call(
+            'set_physics_properties',
+            SetPhysicsProperties,
+            time_step=now.time_step,
+            max_update_rate=factor / now.time_step,
+            gravity=now.gravity,
+            ode_config=now.ode_config,
+        )

@@ -30,8 +30,11 @@ class TopicGraph:
         if time.monotonic() - self._asked > LIFETIME:
             self._ask()
         types, own = self._types, rospy.get_name()
-        return {name: types[name] for name, nodes in sorted(self._state[part])
-                if name in types and set(nodes) - {own}}
+        return {
+            name: types[name]
+            for name, nodes in sorted(self._state[part])
+            if name in types and set(nodes) - {own}
+        }
 
     def _ask(self) -> None:
         master = rospy.get_master()

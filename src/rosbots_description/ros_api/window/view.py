@@ -22,15 +22,21 @@ class RosView:
     def __init__(self) -> None:
         self._subscribers: list[rospy.Subscriber] = []
 
-    def open(self, change: Callable[[SceneChange], None],
-             motion: Callable[[ShownMotion], None]) -> None:
+    def open(
+        self, change: Callable[[SceneChange], None], motion: Callable[[ShownMotion], None]
+    ) -> None:
         """Subscribe; the callbacks are called from threads of their own, in the order sent."""
         order = InOrder(change, motion)
         self._subscribers = [
             rospy.Subscriber('gazebo/view/scene', String, lambda m: order.change(scene_change(m))),
             # Each message: it alone has the poses of links that have come to rest since.
-            rospy.Subscriber('gazebo/view/motion', Float64MultiArray,
-                             lambda m: order.motion(read_motion(m)), tcp_nodelay=True)]
+            rospy.Subscriber(
+                'gazebo/view/motion',
+                Float64MultiArray,
+                lambda m: order.motion(read_motion(m)),
+                tcp_nodelay=True,
+            ),
+        ]
 
     def close(self) -> None:
         """Unsubscribe: the simulator computes nothing for this view any more."""
@@ -48,8 +54,9 @@ class InOrder:
     what others were shown may come before the first whole scene; they are left out.
     """
 
-    def __init__(self, change: Callable[[SceneChange], None],
-                 motion: Callable[[ShownMotion], None]) -> None:
+    def __init__(
+        self, change: Callable[[SceneChange], None], motion: Callable[[ShownMotion], None]
+    ) -> None:
         self._show_change, self._show_motion = change, motion
         self._lock = threading.Lock()
         self._is_begun = False  # whether a whole scene has come
@@ -73,8 +80,9 @@ class InOrder:
         with self._lock:
             if not self._early and _newest(motion) <= self._newest:
                 self._show_motion(motion)
-            elif self._early and (len(self._early) == EARLY
-                                  or _newest(motion) <= _newest(self._early[-1])):
+            elif self._early and (
+                len(self._early) == EARLY or _newest(motion) <= _newest(self._early[-1])
+            ):
                 self._early[-1] = motion.after(self._early[-1])
             else:
                 self._early.append(motion)

@@ -26,8 +26,10 @@ PROCESSES = 64  # of the sandbox
 SAID = 10_000  # [bytes] of the program's complaints that are read
 UPLOAD = '/upload'  # the folder of the file, inside
 VARIABLES = ('ROS_PACKAGE_PATH', 'ROS_ROOT', 'ROS_DISTRO', 'ROS_ETC_DIR')  # no secrets
-NO_SANDBOX = ("'{}': xacro files can run code, so they are expanded in a sandbox only, and {}; "
-              'expand it with rosrun xacro xacro, and upload the URDF')
+NO_SANDBOX = (
+    "'{}': xacro files can run code, so they are expanded in a sandbox only, and {}; "
+    'expand it with rosrun xacro xacro, and upload the URDF'
+)
 NOT_INSTALLED = 'there is no program bwrap (Debian package bubblewrap)'
 
 
@@ -51,10 +53,26 @@ def expanded(name: str, content: bytes) -> bytes:
         file.write_bytes(content)
         command = [
             *_sandbox([*folders, *sys.path, sys.prefix, sys.base_prefix]),
-            '--ro-bind', folder, UPLOAD, '--chdir', UPLOAD, '--remount-ro', '/',
-            'prlimit', f'--cpu={PROCESSOR_TIME}', f'--as={MEMORY}', f'--nproc={PROCESSES}',
-            f'--fsize={MAX_XML_BYTES}', '--core=0',
-            sys.executable, '-B', '-X', 'utf8', str(program), f'{UPLOAD}/upload.xacro']
+            '--ro-bind',
+            folder,
+            UPLOAD,
+            '--chdir',
+            UPLOAD,
+            '--remount-ro',
+            '/',
+            'prlimit',
+            f'--cpu={PROCESSOR_TIME}',
+            f'--as={MEMORY}',
+            f'--nproc={PROCESSES}',
+            f'--fsize={MAX_XML_BYTES}',
+            '--core=0',
+            sys.executable,
+            '-B',
+            '-X',
+            'utf8',
+            str(program),
+            f'{UPLOAD}/upload.xacro',
+        ]
         with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as said:
             failed = _run(command, out, said)
             if failed:
@@ -66,8 +84,16 @@ def expanded(name: str, content: bytes) -> bytes:
 def _run(command: list[str], out: BinaryIO, said: BinaryIO) -> bool:
     """Run a command; return whether it failed, or took too long."""
     try:
-        return bool(subprocess.run(command, check=False, stdin=subprocess.DEVNULL, stdout=out,
-                                   stderr=said, timeout=PATIENCE).returncode)
+        return bool(
+            subprocess.run(
+                command,
+                check=False,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=said,
+                timeout=PATIENCE,
+            ).returncode
+        )
     except subprocess.TimeoutExpired:
         return True
 
@@ -86,8 +112,9 @@ def _unusable() -> str:
     """Return why there is no sandbox; '' if there is one."""
     if shutil.which('bwrap') is None or shutil.which('prlimit') is None:
         return NOT_INSTALLED
-    ended = subprocess.run([*_sandbox([]), 'true'], check=False, capture_output=True,
-                           stdin=subprocess.DEVNULL)
+    ended = subprocess.run(
+        [*_sandbox([]), 'true'], check=False, capture_output=True, stdin=subprocess.DEVNULL
+    )
     if ended.returncode == 0:
         return ''
     said = ended.stderr.decode(errors='replace').strip().splitlines()
@@ -96,10 +123,30 @@ def _unusable() -> str:
 
 def _sandbox(folders: Iterable[str]) -> list[str]:
     """Return the command line of a sandbox that shows some folders besides the system's own."""
-    made = ['bwrap', '--unshare-all', '--die-with-parent', '--new-session', '--cap-drop', 'ALL',
-            '--clearenv', '--setenv', 'PATH', '/usr/bin:/bin', '--setenv', 'LANG', 'C.UTF-8',
-            '--setenv', 'HOME', '/', '--setenv', 'ROS_HOME', '/',
-            '--setenv', 'PYTHONPATH', os.pathsep.join(filter(os.path.isabs, sys.path))]
+    made = [
+        'bwrap',
+        '--unshare-all',
+        '--die-with-parent',
+        '--new-session',
+        '--cap-drop',
+        'ALL',
+        '--clearenv',
+        '--setenv',
+        'PATH',
+        '/usr/bin:/bin',
+        '--setenv',
+        'LANG',
+        'C.UTF-8',
+        '--setenv',
+        'HOME',
+        '/',
+        '--setenv',
+        'ROS_HOME',
+        '/',
+        '--setenv',
+        'PYTHONPATH',
+        os.pathsep.join(filter(os.path.isabs, sys.path)),
+    ]
     for name in VARIABLES:
         if name in os.environ:
             made += ['--setenv', name, os.environ[name]]
@@ -121,8 +168,13 @@ def _apart(folders: Iterable[str]) -> Iterator[str]:
     A folder around the user's home is left out: it is no package, whatever its manifest says.
     """
     home = os.path.realpath(os.path.expanduser('~'))
-    wanted = {os.path.normpath(one) for folder in folders if os.path.isabs(folder)
-              for one in (folder, os.path.realpath(folder)) if os.path.isdir(one)}
+    wanted = {
+        os.path.normpath(one)
+        for folder in folders
+        if os.path.isabs(folder)
+        for one in (folder, os.path.realpath(folder))
+        if os.path.isdir(one)
+    }
     shown = ['/usr']
     for folder in sorted(wanted, key=lambda one: (one.count('/'), one)):
         if f'{home}/'.startswith(f'{folder.rstrip("/")}/'):

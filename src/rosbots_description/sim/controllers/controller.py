@@ -43,7 +43,11 @@ class Controller:
     topic_names: Mapping[str, str] = {}
 
     def __init__(
-        self, world: 'World', robot: SimulatedRobot, spec: ControllerSpec, root: str,
+        self,
+        world: 'World',
+        robot: SimulatedRobot,
+        spec: ControllerSpec,
+        root: str,
         parameters: Mapping[str, object],
     ) -> None:
         """Prepare for `load`; `root` is the namespace of the controller manager."""
@@ -136,7 +140,8 @@ class Controller:
         names = self.params.strings(path)
         if names is None:
             raise ControllerError(
-                f"Failed to getParam '{path}' (namespace: {self.params.namespace}).")
+                f"Failed to getParam '{path}' (namespace: {self.params.namespace})."
+            )
         if not names:
             raise ControllerError('List of joint names is empty.')
         return names
@@ -152,8 +157,9 @@ class Controller:
 
     def finish_loading(self) -> None:
         """Freeze what it claims."""
-        self.claims = tuple((interface, tuple(sorted(set(names))))
-                            for interface, names in self._claimed.items())
+        self.claims = tuple(
+            (interface, tuple(sorted(set(names)))) for interface, names in self._claimed.items()
+        )
 
 
 class RateGate:

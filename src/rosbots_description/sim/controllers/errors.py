@@ -20,7 +20,8 @@ class InterfaceError(ControllerError):
     def __init__(self, interface: str) -> None:
         super().__init__(
             f"This controller requires a hardware interface of type '{interface}'. Make sure this "
-            'is registered in the hardware_interface::RobotHW class.')
+            'is registered in the hardware_interface::RobotHW class.'
+        )
 
 
 class ResourceError(ControllerError):

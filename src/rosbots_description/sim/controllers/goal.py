@@ -5,7 +5,12 @@ from typing import Any
 from ..runtime import Output
 
 ACTIVE, SUCCEEDED, ABORTED, CANCELED, REJECTED = (
-    'active', 'succeeded', 'aborted', 'canceled', 'rejected')
+    'active',
+    'succeeded',
+    'aborted',
+    'canceled',
+    'rejected',
+)
 
 
 class Goal:

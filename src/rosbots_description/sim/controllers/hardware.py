@@ -127,8 +127,9 @@ class VelocityHandle(JointHandle):
 
     def write(self, period: float, stopped: bool) -> None:
         """Set the motor."""
-        self.joint.set_motor(0.0 if stopped else self.command,
-                             min(self.limits.effort, _MOST_EFFORT))
+        self.joint.set_motor(
+            0.0 if stopped else self.command, min(self.limits.effort, _MOST_EFFORT)
+        )
 
 
 class VelocityPidHandle(VelocityHandle):
@@ -175,9 +176,7 @@ class SimulatedRobot:
     `pids` are those of pid_gains, by their namespace below that of the robot.
     """
 
-    def __init__(
-        self, model: 'Model', control: RobotControl, params: ControllerParameters
-    ) -> None:
+    def __init__(self, model: 'Model', control: RobotControl, params: ControllerParameters) -> None:
         """Build the hardware.
 
         Args:
@@ -258,28 +257,41 @@ class SimulatedRobot:
             logger.warning(
                 'Transmission %s has more than one joint. Currently the default robot hardware '
                 'simulation  interface only supports one. %s is not simulated: its joints (%s) '
-                'are not controlled', name, transmission.type, ', '.join(transmission.joints))
+                'are not controlled',
+                name,
+                transmission.type,
+                ', '.join(transmission.joints),
+            )
             return None
-        (joint_name, interfaces), = transmission.joints.items()
+        ((joint_name, interfaces),) = transmission.joints.items()
         if len(interfaces) > 1:
             logger.warning(
                 'Joint %s of transmission %s specifies multiple hardware interfaces. Currently the '
                 'default robot hardware simulation interface only supports one. Using the first '
-                'entry', joint_name, name)
+                'entry',
+                joint_name,
+                name,
+            )
         written = interfaces[0]
         classes = _HANDLES.get(written.removeprefix(_PREFIX))
         if classes is None:
-            raise PluginError(f"No matching hardware interface found for '{written}' while loading "
-                              f'interfaces for {joint_name}')
+            raise PluginError(
+                f"No matching hardware interface found for '{written}' while loading "
+                f'interfaces for {joint_name}'
+            )
         if not written.startswith(_PREFIX):
             logger.warning(
                 "Deprecated syntax, please prepend 'hardware_interface/' to '%s' within the "
-                "<hardwareInterface> tag in joint '%s'.", written, joint_name)
+                "<hardwareInterface> tag in joint '%s'.",
+                written,
+                joint_name,
+            )
         try:
             joint = self.model.joint(joint_name)
         except NotFoundError:
-            raise PluginError(f'This robot has a joint named "{joint_name}" which is not in the '
-                              'gazebo model.') from None
+            raise PluginError(
+                f'This robot has a joint named "{joint_name}" which is not in the gazebo model.'
+            ) from None
         return self._make(joint, *classes)
 
     def _make(
@@ -303,15 +315,21 @@ class SimulatedRobot:
     def _find_mimics(self) -> Iterator[MimicJoint]:
         """Yield the joints that follow others, and that nothing else moves."""
         joints = self.model.joints
-        of_plugins = {plugin.follower for plugin in self.model.plugins.values()
-                      if isinstance(plugin, MimicJointPlugin)}
+        of_plugins = {
+            plugin.follower
+            for plugin in self.model.plugins.values()
+            if isinstance(plugin, MimicJointPlugin)
+        }
         for name, described in self.control.joints.items():
             is_free = name in joints and name not in self.joints and name not in of_plugins
             if described.mimic is not None and is_free:
                 leader = joints.get(described.mimic.joint)
                 if leader is None or leader is joints[name]:
-                    logger.error("joint '%s' mimics '%s', which %s; it is passive", name,
-                                 described.mimic.joint, 'is itself' if leader is not None
-                                 else 'the model does not have')
+                    logger.error(
+                        "joint '%s' mimics '%s', which %s; it is passive",
+                        name,
+                        described.mimic.joint,
+                        'is itself' if leader is not None else 'the model does not have',
+                    )
                 else:
                     yield MimicJoint(joints[name], leader, described)

@@ -17,7 +17,8 @@ class ForwardCommand(Controller):
     def starting(self, now_ns: int) -> None:
         """Hold the position; or command no velocity, or no effort."""
         self.commands = tuple(
-            one.position if self.interface == POSITION else 0.0 for one in self.joints)
+            one.position if self.interface == POSITION else 0.0 for one in self.joints
+        )
 
     def update(self, now_ns: int, period: float) -> None:
         """Forward the commands."""
@@ -96,7 +97,9 @@ def checked_group(values: Iterable[float], count: int) -> tuple[float, ...]:
     """
     numbers = tuple(map(float, values))
     if len(numbers) != count:
-        raise ValueError(f'Dimension of command ({len(numbers)}) does not match number of joints '
-                         f'({count})! Not executing!')
+        raise ValueError(
+            f'Dimension of command ({len(numbers)}) does not match number of joints '
+            f'({count})! Not executing!'
+        )
     require_finite(numbers)
     return numbers

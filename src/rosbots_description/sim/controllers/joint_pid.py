@@ -63,8 +63,9 @@ class ReportingPid(Controller):
     ) -> None:
         command = self.handle.command = self._pid.update(error, period)
         if self.is_read and self._updates % _REPORT_PERIOD == 0:
-            self.state_output.send(JointPidState(
-                wanted, actual, rate, error, period, command, self._pid.gains))
+            self.state_output.send(
+                JointPidState(wanted, actual, rate, error, period, command, self._pid.gains)
+            )
         self._updates += 1
 
 
@@ -86,8 +87,13 @@ class JointPositionController(ReportingPid):
     def update(self, now_ns: int, period: float) -> None:
         """Set the effort or velocity."""
         wanted = within_limits(self.handle, self._wanted)
-        self._drive(wanted, self.handle.position, self.handle.velocity,
-                    error_of(self.handle, wanted), period)
+        self._drive(
+            wanted,
+            self.handle.position,
+            self.handle.velocity,
+            error_of(self.handle, wanted),
+            period,
+        )
 
 
 @register_controller('effort_controllers/JointVelocityController', EFFORT)
@@ -122,7 +128,8 @@ class JointGroupPositionController(Controller):
                 self._pids.append(self.pid(path))
             except ControllerError as error:
                 raise ControllerError(
-                    *error.sentences, f'Failed to load PID parameters from {path}') from None
+                    *error.sentences, f'Failed to load PID parameters from {path}'
+                ) from None
 
     def starting(self, now_ns: int) -> None:
         """Hold the positions."""
@@ -152,5 +159,4 @@ def within_limits(joint: JointHandle, position: float) -> float:
 def error_of(joint: JointHandle, wanted: float) -> float:
     """Return the way to a position."""
     described = joint.described
-    return position_error(
-        described.type, joint.position, wanted, described.lower, described.upper)
+    return position_error(described.type, joint.position, wanted, described.lower, described.upper)

@@ -29,8 +29,10 @@ class JointStateController(Controller):
         rate = self.params.number('publish_rate')
         if rate is None:
             raise ControllerError("Parameter 'publish_rate' not set")
-        self._handles = [self.robot.handle(self.interface, name)
-                         for name in (self.robot.joints if names is None else names)]
+        self._handles = [
+            self.robot.handle(self.interface, name)
+            for name in (self.robot.joints if names is None else names)
+        ]
         self._gate = RateGate(rate)
         self._names = [handle.name for handle in self._handles]
         self._extra: list[tuple[float, float, float]] = []
@@ -72,8 +74,9 @@ class JointStateController(Controller):
             if not isinstance(name, str):
                 logger.error('Extra joint does not specify name. Ignoring.')
             elif name in self._names:
-                logger.warning('Joint state interface already contains specified extra joint '
-                               "'%s'.", name)
+                logger.warning(
+                    "Joint state interface already contains specified extra joint '%s'.", name
+                )
             else:
                 self._add_extra_joint(name, one)
 
@@ -82,8 +85,9 @@ class JointStateController(Controller):
         for key in ('position', 'velocity', 'effort'):
             value = given.get(key, 0.0)
             if not isinstance(value, float):
-                logger.error("Extra joint '%s' does not specify a valid default %s. Ignoring.",
-                             name, key)
+                logger.error(
+                    "Extra joint '%s' does not specify a valid default %s. Ignoring.", name, key
+                )
                 return
             values.append(value)
         self._names.append(name)

@@ -34,7 +34,12 @@ from .trajectory_splicing import points_to_come, rest_of, spliced
 logger = logging.getLogger(__name__)
 
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, PATH_TOLERANCE_VIOLATED, GOAL_TOLERANCE_VIOLATED = (
-    0, -1, -2, -4, -5)
+    0,
+    -1,
+    -2,
+    -4,
+    -5,
+)
 
 
 class FollowedGoal(Goal):
@@ -59,10 +64,12 @@ class FollowedGoal(Goal):
 
 # The simulated hardware has no joints of the first two, as in Gazebo.
 @register_controller(
-    'pos_vel_controllers/JointTrajectoryController', 'hardware_interface::PosVelJointInterface')
+    'pos_vel_controllers/JointTrajectoryController', 'hardware_interface::PosVelJointInterface'
+)
 @register_controller(
     'pos_vel_acc_controllers/JointTrajectoryController',
-    'hardware_interface::PosVelAccJointInterface')
+    'hardware_interface::PosVelAccJointInterface',
+)
 @register_controller('effort_controllers/JointTrajectoryController', EFFORT)
 @register_controller('position_controllers/JointTrajectoryController', POSITION)
 @register_controller('velocity_controllers/JointTrajectoryController', VELOCITY)
@@ -74,7 +81,10 @@ class JointTrajectoryController(Controller):
     """
 
     topic_names: Mapping[str, str] = {
-        'play': 'command', 'state': 'state', 'follow': 'follow_joint_trajectory'}
+        'play': 'command',
+        'state': 'state',
+        'follow': 'follow_joint_trajectory',
+    }
 
     def load(self) -> None:
         """Read the parameters and find the joints."""
@@ -87,8 +97,9 @@ class JointTrajectoryController(Controller):
         self._allows_partial = read('allow_partial_joints_goal', False)
         names = self.params.strings('joints')
         if not names:
-            raise ControllerError("Could not find 'joints' parameter (namespace: "
-                                  f'{self.params.namespace}).')
+            raise ControllerError(
+                f"Could not find 'joints' parameter (namespace: {self.params.namespace})."
+            )
         self.joint_names = tuple(names)
         for name in names:
             if name not in self.robot.control.joints:
@@ -96,8 +107,9 @@ class JointTrajectoryController(Controller):
         self.joints = tuple(self._find(name) for name in names)
         self._wraps = tuple(one.described.type == CONTINUOUS for one in self.joints)
         self._tolerances = self._read_tolerances()
-        self._pids = [] if self.interface == POSITION else [
-            self.pid(f'gains/{name}') for name in names]
+        self._pids = (
+            [] if self.interface == POSITION else [self.pid(f'gains/{name}') for name in names]
+        )
         self._feedforward = [read(f'velocity_ff/{name}', 0.0) for name in names]
         self.state_output: Output[TrajectoryState] = self.output('state')
         self._active: FollowedGoal | None = None
@@ -115,12 +127,18 @@ class JointTrajectoryController(Controller):
 
     def _read_tolerances(self) -> tuple[Tolerances, ...]:
         read = self.params.read
-        stopped, late = (read(f'constraints/{key}', default) for key, default in (
-            ('stopped_velocity_tolerance', 0.01), ('goal_time', 0.0)))
+        stopped, late = (
+            read(f'constraints/{key}', default)
+            for key, default in (('stopped_velocity_tolerance', 0.01), ('goal_time', 0.0))
+        )
         return tuple(
-            Tolerances(Tolerance(read(f'constraints/{name}/trajectory', 0.0)),
-                       Tolerance(read(f'constraints/{name}/goal', 0.0), stopped), late)
-            for name in self.joint_names)
+            Tolerances(
+                Tolerance(read(f'constraints/{name}/trajectory', 0.0)),
+                Tolerance(read(f'constraints/{name}/goal', 0.0), stopped),
+                late,
+            )
+            for name in self.joint_names
+        )
 
     def starting(self, now_ns: int) -> None:
         """Hold the position."""
@@ -152,10 +170,16 @@ class JointTrajectoryController(Controller):
         """
         require_finite(positions)
         if len(positions) != len(self.joints):
-            raise ValueError(f'Dimension of command ({len(positions)}) does not match number of '
-                             f'joints ({len(self.joints)})! Not executing!')
-        self.play(Trajectory(self.joint_names, [
-            TrajectoryPoint(positions, (0.0,) * len(positions), time_from_start=seconds)]))
+            raise ValueError(
+                f'Dimension of command ({len(positions)}) does not match number of '
+                f'joints ({len(self.joints)})! Not executing!'
+            )
+        self.play(
+            Trajectory(
+                self.joint_names,
+                [TrajectoryPoint(positions, (0.0,) * len(positions), time_from_start=seconds)],
+            )
+        )
 
     def play(self, trajectory: Trajectory) -> None:
         """Move along a trajectory, without a goal; one without points stops the joints.
@@ -189,8 +213,10 @@ class JointTrajectoryController(Controller):
             Tolerances(
                 own.path.replaced_by(goal.path_tolerances.get(name, Tolerance())),
                 own.goal.replaced_by(goal.goal_tolerances.get(name, Tolerance())),
-                max(0.0, late) if late else own.goal_time)
-            for name, own in zip(self.joint_names, self._tolerances, strict=True))
+                max(0.0, late) if late else own.goal_time,
+            )
+            for name, own in zip(self.joint_names, self._tolerances, strict=True)
+        )
         try:
             self._replace(goal.trajectory, followed, tolerances)
         except ControllerError as error:
@@ -235,15 +261,17 @@ class JointTrajectoryController(Controller):
         self._desired = [segment.sample(time) for segment in current]
         errors = [
             (shortest(joint.position, position), velocity - joint.velocity)
-            for joint, (position, velocity, _) in zip(self.joints, self._desired, strict=True)]
+            for joint, (position, velocity, _) in zip(self.joints, self._desired, strict=True)
+        ]
         first = current[0]
         self._times = (first.time_from_start, time - first.start + first.time_from_start)
         if self._active is not None:
             self._check(time, current, errors)
         if self._pids:
             for i, (joint, pid) in enumerate(zip(self.joints, self._pids, strict=True)):
-                joint.command = (self._desired[i][1] * self._feedforward[i]
-                                 + pid.update(errors[i][0], period, errors[i][1]))
+                joint.command = self._desired[i][1] * self._feedforward[i] + pid.update(
+                    errors[i][0], period, errors[i][1]
+                )
         else:
             for joint, (position, _, _) in zip(self.joints, self._desired, strict=True):
                 joint.command = position
@@ -265,7 +293,10 @@ class JointTrajectoryController(Controller):
             TrajectoryPoint(
                 [shortest(p, wanted) for (p, _), wanted in zip(actual, positions, strict=True)],
                 [wanted - v for (_, v), wanted in zip(actual, velocities, strict=True)],
-                (), desired_time - actual_time))
+                (),
+                desired_time - actual_time,
+            ),
+        )
 
     def _check(
         self, time: float, current: Sequence[SplineSegment], errors: Sequence[tuple[float, float]]
@@ -312,17 +343,20 @@ class JointTrajectoryController(Controller):
         for i, joint in enumerate(self.joints):
             if stop <= 0.0:
                 rest = JointPoint(joint.position, 0.0, 0.0)
-                self._segments[i] = [SplineSegment(start, start, coefficients(rest, rest, 0.0), 0.0,
-                                             goal)]
+                self._segments[i] = [
+                    SplineSegment(start, start, coefficients(rest, rest, 0.0), 0.0, goal)
+                ]
                 continue
             position, velocity, _ = self._desired[i]
             here = JointPoint(position, velocity, 0.0)
             there = JointPoint(position, -velocity, 0.0)
             # Half way of the motion to and fro the joint is at rest.
-            end = JointPoint(*SplineSegment(
-                0.0, 2.0 * stop, coefficients(here, there, 2.0 * stop)).sample(stop))
+            end = JointPoint(
+                *SplineSegment(0.0, 2.0 * stop, coefficients(here, there, 2.0 * stop)).sample(stop)
+            )
             self._segments[i] = [
-                SplineSegment(start, start + stop, coefficients(here, end, stop), 0.0, goal)]
+                SplineSegment(start, start + stop, coefficients(here, end, stop), 0.0, goal)
+            ]
 
     def _replace(
         self, trajectory: Trajectory, goal: FollowedGoal | None, tolerances: Sequence[Tolerances]
@@ -339,7 +373,8 @@ class JointTrajectoryController(Controller):
         is_complete = self._allows_partial or len(names) == len(self.joint_names)
         if not is_complete or not set(names) <= set(self.joint_names):
             raise ControllerError(
-                'Cannot create trajectory from message. It does not contain the expected joints.')
+                'Cannot create trajectory from message. It does not contain the expected joints.'
+            )
         try:
             check_points(trajectory)
         except ValueError as error:
@@ -351,14 +386,19 @@ class JointTrajectoryController(Controller):
         replaced = [rest_of(segments, now, goal) for segments in self._segments]
         for index, name in enumerate(names):
             joint = self.joint_names.index(name)
-            replaced[joint] = spliced(replaced[joint], points, index, self._wraps[joint], start,
-                                      now, goal, own[joint])
+            replaced[joint] = spliced(
+                replaced[joint], points, index, self._wraps[joint], start, now, goal, own[joint]
+            )
         self._segments = replaced
 
     def _goals(self) -> Iterator[FollowedGoal]:
         """Yield the goals that its state refers to, each once."""
-        goals = {id(one): one for segments in self._segments for segment in segments
-                 if (one := segment.goal) is not None}
+        goals = {
+            id(one): one
+            for segments in self._segments
+            for segment in segments
+            if (one := segment.goal) is not None
+        }
         if self._active is not None:
             goals[id(self._active)] = self._active
         yield from goals.values()

@@ -38,16 +38,24 @@ def read_limits(described: ControlledJoint | None, params: ControllerParameters)
     limits = JointLimits()
     if described is not None:
         limits = JointLimits(
-            described.type, described.lower, described.upper, described.velocity,
-            effort=described.effort, soft=described.soft)
+            described.type,
+            described.lower,
+            described.upper,
+            described.velocity,
+            effort=described.effort,
+            soft=described.soft,
+        )
     position = params.find('has_position_limits')
     lower, upper = params.number('min_position'), params.number('max_position')
     if position is False:
         limits = replace(limits, lower=-math.inf, upper=math.inf)
     elif position is True and lower is not None and upper is not None:
         limits = replace(limits, lower=lower, upper=upper)
-    for field, name in (('velocity', 'velocity'), ('acceleration', 'acceleration'),
-                        ('effort', 'effort')):
+    for field, name in (
+        ('velocity', 'velocity'),
+        ('acceleration', 'acceleration'),
+        ('effort', 'effort'),
+    ):
         given, most = params.find(f'has_{name}_limits'), params.number(f'max_{name}')
         if given is False:
             limits = replace(limits, **{field: math.inf})  # type: ignore[arg-type]
@@ -63,9 +71,7 @@ def read_limits(described: ControlledJoint | None, params: ControllerParameters)
 class Enforcement(Protocol):
     """Keeps the commands of one joint within its limits."""
 
-    def enforce(
-        self, command: float, position: float, velocity: float, period: float
-    ) -> float:
+    def enforce(self, command: float, position: float, velocity: float, period: float) -> float:
         """Return the command that is allowed in the state of the joint."""
 
 
@@ -128,7 +134,8 @@ class EffortSoftLimits(EffortSaturation):
         most = limits.effort
         low, high = (
             min(max(limits.soft.k_velocity * (bound - velocity), -most), most)
-            for bound in _velocity_bounds(limits, position))
+            for bound in _velocity_bounds(limits, position)
+        )
         return min(max(command, low), high)
 
 
@@ -165,6 +172,8 @@ def _velocity_bounds(limits: JointLimits, position: float) -> tuple[float, float
     soft, most = limits.soft, min(limits.velocity, 1e9)  # inf * 0 would be NaN
     if soft is None or not limits.has_position_limits:
         return -most, most
-    low, high = (min(max(soft.k_position * (bound - position), -most), most)
-                 for bound in (soft.lower, soft.upper))
+    low, high = (
+        min(max(soft.k_position * (bound - position), -most), most)
+        for bound in (soft.lower, soft.upper)
+    )
     return low, high

@@ -48,8 +48,9 @@ class ControllerManager:
     def __repr__(self) -> str:
         """Return its robot, and its controllers with their states."""
         loaded = ', '.join(f'{one.name} ({one.state})' for one in self.controllers.values())
-        return f'<{type(self).__name__} of {self.robot.model.name} with ' \
-            f'{loaded or "no controller"}>'
+        return (
+            f'<{type(self).__name__} of {self.robot.model.name} with {loaded or "no controller"}>'
+        )
 
     @staticmethod
     def types() -> Sequence[tuple[str, str]]:
@@ -64,14 +65,17 @@ class ControllerManager:
         """
         found = self.controllers.get(name)
         if found is None:
-            raise NotFoundError(f"no controller '{name}' is loaded"
-                                f'{suggestion(name, self.controllers)}')
+            raise NotFoundError(
+                f"no controller '{name}' is loaded{suggestion(name, self.controllers)}"
+            )
         return found
 
     def list(self) -> Sequence[ControllerStatus]:
         """Return the state of all loaded controllers."""
-        return [ControllerStatus(one.name, one.state, one.type, one.claims)
-                for one in self.controllers.values()]
+        return [
+            ControllerStatus(one.name, one.state, one.type, one.claims)
+            for one in self.controllers.values()
+        ]
 
     def load(self, name: str, type_name: str, parameters: Mapping[str, object]) -> None:
         """Load a controller; it does not run yet.
@@ -86,20 +90,23 @@ class ControllerManager:
         """
         if name in self.controllers:
             raise ControllerError(
-                f"A controller named '{name}' was already loaded inside the controller manager")
+                f"A controller named '{name}' was already loaded inside the controller manager"
+            )
         if not type_name:
             own = f'/{self.namespace}/{name}'.replace('//', '/')
             raise ControllerError(
                 f"Could not load controller '{name}' because the type was not specified. Did you "
                 'load the controller configuration on the parameter server (namespace: '
-                f"'{own}')?")
+                f"'{own}')?"
+            )
         kind = find_type(type_name)
         if kind is None:
             raise ControllerError(
                 f"Could not load controller '{name}' because controller type '{type_name}' does "
                 'not exist.',
                 "Use 'rosservice call controller_manager/list_controller_types' to get the "
-                'available types')
+                'available types',
+            )
         spec = ControllerSpec(name, type_name, kind.interface)
         made = kind.made_by(self.world, self.robot, spec, self.namespace, parameters)
         failed = f"Initializing controller '{name}' failed"
@@ -107,13 +114,15 @@ class ControllerManager:
             made.load()
         except ResourceError as error:
             raise ControllerError(
-                f"Exception thrown while initializing controller '{name}'.\n{error}", failed,
+                f"Exception thrown while initializing controller '{name}'.\n{error}",
+                failed,
             ) from None
         except InterfaceError as error:
             raise ControllerError(*error.sentences, failed) from None
         except ControllerError as error:
             raise ControllerError(
-                *error.sentences, 'Failed to initialize the controller', failed) from None
+                *error.sentences, 'Failed to initialize the controller', failed
+            ) from None
         made.finish_loading()
         self.controllers[name] = made
         self.changed.send(None)
@@ -126,17 +135,18 @@ class ControllerManager:
         """
         found = self.controllers.get(name)
         if found is None:
-            raise ControllerError(f"Could not unload controller with name '{name}' because no "
-                                  'controller with this name exists')
+            raise ControllerError(
+                f"Could not unload controller with name '{name}' because no "
+                'controller with this name exists'
+            )
         if found.state == RUNNING:
             raise ControllerError(
-                f"Could not unload controller with name '{name}' because it is still running")
+                f"Could not unload controller with name '{name}' because it is still running"
+            )
         del self.controllers[name]
         self.changed.send(None)
 
-    def switch(
-        self, start: Sequence[str], stop: Sequence[str] = (), strict: bool = True
-    ) -> None:
+    def switch(self, start: Sequence[str], stop: Sequence[str] = (), strict: bool = True) -> None:
         """Stop and start controllers, all between the same two steps.
 
         Args:
@@ -152,15 +162,18 @@ class ControllerManager:
             if one in stopping and not runs:
                 if strict:
                     raise ControllerError(
-                        f"Could not stop controller '{name}' since it is not running")
+                        f"Could not stop controller '{name}' since it is not running"
+                    )
                 stopping.remove(one)
             if one in starting and runs and one not in stopping:
                 if strict:
                     raise ControllerError(f"Controller '{name}' is already running")
                 starting.remove(one)
             if one in starting and one in stopping:
-                raise ControllerError(f"Could no start or stop controller '{name}' because of "
-                                      'conflicting switching command')
+                raise ControllerError(
+                    f"Could no start or stop controller '{name}' because of "
+                    'conflicting switching command'
+                )
             if one in starting or (runs and one not in stopping):
                 after.append(one)
         _require_exclusive(after)
@@ -216,8 +229,10 @@ class ControllerManager:
             if name in self.controllers:
                 found.append(self.controllers[name])
             elif strict:
-                raise ControllerError(f"Could not {what} controller with name '{name}' because no "
-                                      'controller with this name exists')
+                raise ControllerError(
+                    f"Could not {what} controller with name '{name}' because no "
+                    'controller with this name exists'
+                )
         return found
 
 
@@ -241,6 +256,9 @@ def _require_exclusive(running: Sequence[Controller]) -> None:
     conflicts = {joint: names for joint, names in claims.items() if len(names) > 1}
     if conflicts:
         raise ControllerError(
-            *(f'Resource conflict on [{joint}].  Controllers = [{", ".join(names)}, ]'
-              for joint, names in sorted(conflicts.items())),
-            'Could not switch controllers, due to resource conflict')
+            *(
+                f'Resource conflict on [{joint}].  Controllers = [{", ".join(names)}, ]'
+                for joint, names in sorted(conflicts.items())
+            ),
+            'Could not switch controllers, due to resource conflict',
+        )

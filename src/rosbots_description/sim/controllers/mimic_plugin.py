@@ -34,27 +34,32 @@ class MimicJointPlugin(ModelPlugin):
         for tag in ('joint', 'mimicJoint'):
             if self.params.text(tag) is None:
                 raise PluginError(
-                    f'No {tag} element present. MimicJointPlugin could not be loaded.')
+                    f'No {tag} element present. MimicJointPlugin could not be loaded.'
+                )
         names = self.params.required('joint'), self.params.required('mimicJoint')
         for what, name in zip(('', '(mimic) '), names, strict=True):
             if name not in self.model.joints:
                 raise PluginError(
-                    f'No {what}joint named "{name}". MimicJointPlugin could not be loaded.')
+                    f'No {what}joint named "{name}". MimicJointPlugin could not be loaded.'
+                )
         if names[0] == names[1]:
             raise PluginError(
                 f'Joint "{names[0]}" is to mimic itself; name another one in <joint>. '
-                'MimicJointPlugin could not be loaded.')
+                'MimicJointPlugin could not be loaded.'
+            )
         self._leader, self._joint = (self.model.joints[name] for name in names)
         self.follower = names[1]
         self.multiplier = self.params.read('multiplier', 1.0)
         self.offset = self.params.read('offset', 0.0)  # [rad or m]
         self.sensitiveness = self.params.read('sensitiveness', 0.0)  # [rad or m]
         limit = self._joint.spec.effort
-        self.max_effort = abs(self.params.read(
-            'maxEffort', 1e9 if limit is None else limit))  # [N m or N]
+        self.max_effort = abs(
+            self.params.read('maxEffort', 1e9 if limit is None else limit)
+        )  # [N m or N]
         gains = self.params.text('hasPID')
-        self.gains_path = '' if gains is None else (
-            gains or f'gazebo_ros_control/pid_gains/{names[1]}')
+        self.gains_path = (
+            '' if gains is None else (gains or f'gazebo_ros_control/pid_gains/{names[1]}')
+        )
         self.pid: Pid | None = None
 
     def configure(self, parameters: Mapping[str, object]) -> None:
@@ -67,7 +72,8 @@ class MimicJointPlugin(ModelPlugin):
         own = f'/{self.namespace}'.replace('//', '/').rstrip('/')
         try:
             self.pid = Pid.from_parameters(
-                ControllerParameters(parameters, own).section(self.gains_path))
+                ControllerParameters(parameters, own).section(self.gains_path)
+            )
         except ControllerError as error:
             logger.error('%s', error)
             self.pid = Pid(Gains(0.0))

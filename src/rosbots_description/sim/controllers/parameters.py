@@ -58,7 +58,8 @@ class ControllerParameters:
         """Return the parameters below a path; none if it has none."""
         found = self.find(path)
         return ControllerParameters(
-            found if isinstance(found, Mapping) else {}, f'{self.namespace}/{path}')
+            found if isinstance(found, Mapping) else {}, f'{self.namespace}/{path}'
+        )
 
     def fill(self, template: str) -> str:
         """Return `template` with each `<path>` replaced by what `read` has returned for it."""

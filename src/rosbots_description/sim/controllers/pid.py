@@ -36,10 +36,16 @@ class Pid:
         if p is None:
             raise ControllerError(f'No p gain specified for pid.  Namespace: {params.namespace}')
         clamp = abs(params.read('i_clamp', 0.0))
-        return cls(Gains(
-            p, params.read('i', 0.0), params.read('d', 0.0),
-            abs(params.read('i_clamp_max', clamp)), -abs(params.read('i_clamp_min', clamp)),
-            params.read('antiwindup', False)))
+        return cls(
+            Gains(
+                p,
+                params.read('i', 0.0),
+                params.read('d', 0.0),
+                abs(params.read('i_clamp_max', clamp)),
+                -abs(params.read('i_clamp_min', clamp)),
+                params.read('antiwindup', False),
+            )
+        )
 
     def reset(self) -> None:
         """Forget the past."""

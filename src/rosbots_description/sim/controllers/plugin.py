@@ -49,8 +49,10 @@ class RosControl(ModelPlugin):
         kind = params.read('robotSimType', DEFAULT_SIMULATION)
         self.e_stop_topic = params.read('eStopTopic', '')
         if kind != DEFAULT_SIMULATION:
-            raise PluginError(f'<robotSimType> is {kind}, a library that is not available here; '
-                              f'remove the tag for {DEFAULT_SIMULATION}')
+            raise PluginError(
+                f'<robotSimType> is {kind}, a library that is not available here; '
+                f'remove the tag for {DEFAULT_SIMULATION}'
+            )
         self._period_ns = self._read_period()
         self.emergency_stop = False
         self._was_stopped = self._is_postponed = self._failed = False
@@ -66,10 +68,17 @@ class RosControl(ModelPlugin):
         if period is None or period < 0.0:
             raise PluginError(f"<controlPeriod> is '{text}'; it takes a period in seconds")
         if period != step:
-            level, word = (logging.ERROR, 'faster') if period < step else (
-                logging.WARNING, 'slower')
-            logger.log(level, 'Desired controller update period (%.9f s) is %s than the gazebo '
-                       'simulation period (%.9f s).', period, word, step)
+            level, word = (
+                (logging.ERROR, 'faster') if period < step else (logging.WARNING, 'slower')
+            )
+            logger.log(
+                level,
+                'Desired controller update period (%.9f s) is %s than the gazebo '
+                'simulation period (%.9f s).',
+                period,
+                word,
+                step,
+            )
         return round(period * NANOSECONDS)
 
     def postpone(self) -> None:
@@ -93,14 +102,19 @@ class RosControl(ModelPlugin):
                 robot has no controllers.
         """
         if self._manager is not None:
-            raise PluginError(f"{self._who}: the controller manager is running already; configure "
-                              'it before the first step, or spawn the model again')
+            raise PluginError(
+                f'{self._who}: the controller manager is running already; configure '
+                'it before the first step, or spawn the model again'
+            )
         self._is_postponed, self._failed = False, True
         described = control or self.model.spec.control
         if described is None:
             described = RobotControl()
-            logger.warning('%s: SDF has no transmissions, so that no joint is controlled; pass the '
-                           'robot\'s URDF to configure()', self._who)
+            logger.warning(
+                '%s: SDF has no transmissions, so that no joint is controlled; pass the '
+                "robot's URDF to configure()",
+                self._who,
+            )
         own = f'/{self.namespace}'.replace('//', '/').rstrip('/')
         robot = SimulatedRobot(self.model, described, ControllerParameters(parameters or {}, own))
         self._failed = False
@@ -119,8 +133,11 @@ class RosControl(ModelPlugin):
             ControllerError: a controller cannot be loaded or started.
             PluginError: as `configure`.
         """
-        kinds = {name: one['type'] for name, one in parameters.items()
-                 if isinstance(one, Mapping) and 'type' in one}
+        kinds = {
+            name: one['type']
+            for name, one in parameters.items()
+            if isinstance(one, Mapping) and 'type' in one
+        }
         self.configure(parameters=parameters)
         for name, kind in kinds.items():
             self.manager.load(name, str(kind), parameters[name])  # type: ignore[arg-type]
@@ -136,7 +153,8 @@ class RosControl(ModelPlugin):
         if self._manager is None:
             if self._is_postponed:
                 raise ControllerError(
-                    f'{self._who} waits for the robot description {self.robot_param}')
+                    f'{self._who} waits for the robot description {self.robot_param}'
+                )
             if self._failed:
                 raise ControllerError(f'{self._who} is not active; the log says why')
             self.configure()
@@ -210,8 +228,11 @@ class RosControl(ModelPlugin):
     def _set_due(self) -> None:
         """Sleep while no controller runs and no joint is commanded."""
         manager = self._manager
-        sleeps = (self._is_postponed or self._failed if manager is None
-                  else not manager.is_running and manager.robot.is_idle)
+        sleeps = (
+            self._is_postponed or self._failed
+            if manager is None
+            else not manager.is_running and manager.robot.is_idle
+        )
         self.due = NEVER if sleeps else self.world.clock.steps + 1
 
     def count_readers(self) -> None:

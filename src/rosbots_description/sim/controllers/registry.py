@@ -64,7 +64,8 @@ def find_type(name: str) -> ControllerType | None:
         except Exception as error:
             raise ControllerError(
                 f"Could not load class '{name}': {type(error).__name__} in "
-                f'{package}.{_MODULE}: {error}') from error
+                f'{package}.{_MODULE}: {error}'
+            ) from error
     return _TYPES.get(name)
 
 
@@ -88,8 +89,11 @@ def _has_controllers(package: str) -> bool:
     except (ImportError, ValueError):
         return False
     places = spec.submodule_search_locations if spec is not None else None
-    return any(file.is_file() for place in places or () for file in (
-        Path(place, f'{_MODULE}.py'), Path(place, _MODULE, '__init__.py')))
+    return any(
+        file.is_file()
+        for place in places or ()
+        for file in (Path(place, f'{_MODULE}.py'), Path(place, _MODULE, '__init__.py'))
+    )
 
 
 def type_names() -> list[str]:

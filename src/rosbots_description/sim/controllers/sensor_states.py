@@ -70,8 +70,10 @@ class SensorController(Controller):
     def _find_wrenches(self) -> Iterator[tuple[str, Source]]:
         for plugin in self.model.plugins.values():
             if isinstance(plugin, ModelPlugin) and 'wrench' in plugin.outputs:
-                yield plugin.spec.name, Source(
-                    plugin.params.string('frame'), plugin.outputs['wrench'], _Newest())
+                yield (
+                    plugin.spec.name,
+                    Source(plugin.params.string('frame'), plugin.outputs['wrench'], _Newest()),
+                )
 
     def starting(self, now_ns: int) -> None:
         """Begin a period."""

@@ -46,13 +46,16 @@ class Tolerance(NamedTuple):
 
     def replaced_by(self, other: 'Tolerance') -> 'Tolerance':
         """Return this with the values of `other`; there, 0 keeps a value and < 0 removes it."""
-        return Tolerance(*(
-            max(0.0, new) if new else old for old, new in zip(self, other, strict=True)))
+        return Tolerance(
+            *(max(0.0, new) if new else old for old, new in zip(self, other, strict=True))
+        )
 
     def permits(self, position: float, velocity: float) -> bool:
         """Tell whether errors are permitted; the acceleration of a joint is not known."""
-        return not ((self.position > 0.0 and abs(position) > self.position)
-                    or (self.velocity > 0.0 and abs(velocity) > self.velocity))
+        return not (
+            (self.position > 0.0 and abs(position) > self.position)
+            or (self.velocity > 0.0 and abs(velocity) > self.velocity)
+        )
 
 
 class Tolerances(NamedTuple):
@@ -119,8 +122,11 @@ class SplineSegment(NamedTuple):
         position = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
         if elapsed > length:
             return position, 0.0, 0.0
-        return (position, c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5))),
-                2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5)))
+        return (
+            position,
+            c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5))),
+            2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5)),
+        )
 
 
 def coefficients(start: JointPoint, end: JointPoint, time: float) -> tuple[float, ...]:
@@ -134,17 +140,28 @@ def coefficients(start: JointPoint, end: JointPoint, time: float) -> tuple[float
         if is_instant:
             return (p0, v0, 0.0, 0.0, 0.0, 0.0)
         way = p1 - p0
-        return (p0, v0, (3.0 * way / time - 2.0 * v0 - v1) / time,
-                (v0 + v1 - 2.0 * way / time) / time ** 2, 0.0, 0.0)
+        return (
+            p0,
+            v0,
+            (3.0 * way / time - 2.0 * v0 - v1) / time,
+            (v0 + v1 - 2.0 * way / time) / time**2,
+            0.0,
+            0.0,
+        )
     if is_instant:
         return (p0, v0, a0 / 2.0, 0.0, 0.0, 0.0)
     # What is left of the way, the velocity and the acceleration after a parabola from the start.
-    way = (p1 - p0 - v0 * time - a0 * time ** 2 / 2.0) / time ** 3
-    speed = (v1 - v0 - a0 * time) / time ** 2
+    way = (p1 - p0 - v0 * time - a0 * time**2 / 2.0) / time**3
+    speed = (v1 - v0 - a0 * time) / time**2
     rest = (a1 - a0) / time
-    return (p0, v0, a0 / 2.0, 10.0 * way - 4.0 * speed + rest / 2.0,
-            (-15.0 * way + 7.0 * speed - rest) / time,
-            (6.0 * way - 3.0 * speed + rest / 2.0) / time ** 2)
+    return (
+        p0,
+        v0,
+        a0 / 2.0,
+        10.0 * way - 4.0 * speed + rest / 2.0,
+        (-15.0 * way + 7.0 * speed - rest) / time,
+        (6.0 * way - 3.0 * speed + rest / 2.0) / time**2,
+    )
 
 
 def active(segments: Sequence[SplineSegment], time: float) -> int:
@@ -169,7 +186,8 @@ def joint_point(point: TrajectoryPoint, index: int, offset: float) -> JointPoint
     return JointPoint(
         point.positions[index] + offset,
         point.velocities[index] if point.velocities else None,
-        point.accelerations[index] if point.accelerations else None)
+        point.accelerations[index] if point.accelerations else None,
+    )
 
 
 def check_points(trajectory: Trajectory) -> None:
@@ -186,13 +204,15 @@ def check_points(trajectory: Trajectory) -> None:
     if any(abs(number) > MOST for number in (*numbers, *times)):
         raise ValueError(f'Trajectory message contains a number beyond {MOST:g}.')
     if any(later <= sooner for sooner, later in pairwise(times)):
-        raise ValueError('Trajectory message contains waypoints that are not strictly increasing '
-                         'in time.')
-    if not all(point.positions for point in trajectory.points):
-        raise ValueError("Quintic spline segment can't be constructed: Endpoint positions can't be "
-                         'empty.')
-    count = len(trajectory.joint_names)
-    if any(series and len(series) != count
-           for point in trajectory.points for series in point[:3]):
         raise ValueError(
-            'Size mismatch in trajectory point position, velocity or acceleration data.')
+            'Trajectory message contains waypoints that are not strictly increasing in time.'
+        )
+    if not all(point.positions for point in trajectory.points):
+        raise ValueError(
+            "Quintic spline segment can't be constructed: Endpoint positions can't be empty."
+        )
+    count = len(trajectory.joint_names)
+    if any(series and len(series) != count for point in trajectory.points for series in point[:3]):
+        raise ValueError(
+            'Size mismatch in trajectory point position, velocity or acceleration data.'
+        )

@@ -53,7 +53,8 @@ def printable(text: str, kept: str = '') -> str:
     if text.isprintable():
         return text
     return ''.join(
-        character if character.isprintable() or character in kept
+        character
+        if character.isprintable() or character in kept
         else character.encode('unicode_escape').decode()
         for character in text
     )

@@ -8,7 +8,6 @@ _LIBRARY = __name__.partition('.')[0]
 
 
 class _Keeper(logging.Handler):
-
     def __init__(self) -> None:
         super().__init__()
         self.kept: list[logging.LogRecord] = []

@@ -17,8 +17,15 @@ _ANY_BYTES = 'surrogateescape'  # for file names that are not UTF-8
 _EXPANDED = '#xacro'  # after the source in a tree's URL; a # in the source itself is quoted
 
 # Elements with a name of their own, for messages to mention.
-_OWNERS = {'link': 'name', 'joint': 'name', 'gazebo': 'reference', 'model': 'name',
-           'plugin': 'name', 'sensor': 'name', 'material': 'name'}
+_OWNERS = {
+    'link': 'name',
+    'joint': 'name',
+    'gazebo': 'reference',
+    'model': 'name',
+    'plugin': 'name',
+    'sensor': 'name',
+    'material': 'name',
+}
 
 
 def fault(
@@ -86,7 +93,7 @@ def suggestion(name: str, known: Collection[str]) -> str:
 def shortened(text: str, most: int = 600) -> str:
     """Return a text as one line of at most about `most` characters, for a message."""
     if len(text) > most:
-        text = f'{text[:most // 2]} ... {text[-most // 2:]}'
+        text = f'{text[: most // 2]} ... {text[-most // 2 :]}'
     return ' '.join(''.join(c if c.isprintable() else ' ' for c in text).split())
 
 

@@ -31,8 +31,7 @@ class ProcessWatch:
     def is_hung(self) -> bool:
         """Tell whether a process that has work to do is stopped, or sleeps and does none."""
         self._poll()
-        return (self._stopped_polls > MAX_STOPPED_POLLS
-                or self._sleeping_polls > MAX_SLEEPING_POLLS)
+        return self._stopped_polls > MAX_STOPPED_POLLS or self._sleeping_polls > MAX_SLEEPING_POLLS
 
     def _poll(self) -> None:
         with open(self._path, 'rb') as file:

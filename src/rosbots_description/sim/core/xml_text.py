@@ -36,7 +36,7 @@ def plain_text(text: str | bytes, source: str) -> str:
     text = _without_comments(text.removeprefix('\ufeff'))
     declaration = _DECLARATION.match(text)
     if declaration:  # the text is decoded already: the encoding that it names no longer applies
-        text = _line_breaks(declaration[0]) + text[declaration.end():]
+        text = _line_breaks(declaration[0]) + text[declaration.end() :]
     return _with_escaped_attributes(text)
 
 
@@ -57,7 +57,10 @@ def _decode(text: bytes, source: str) -> str:
         line = text.count(b'\n', 0, error.start) + 1
         logger.warning(
             '%s, line %d: byte 0x%02x is not UTF-8, the text is read as Latin-1; '
-            'save the file in UTF-8', source, line, text[error.start],
+            'save the file in UTF-8',
+            source,
+            line,
+            text[error.start],
         )
         return text.decode('latin-1')
 
@@ -77,7 +80,7 @@ def _without_comments(text: str) -> str:
         closed = text.find('-->', opened + 4)
         if closed < 0:
             break
-        comment = text[opened:closed + 3]
+        comment = text[opened : closed + 3]
         kept = opened < _HEAD and _EXPANDED in comment
         parts += [text[at:opened], comment if kept else _line_breaks(comment)]
         at = closed + 3
@@ -99,9 +102,9 @@ def _with_escaped_attributes(text: str) -> str:
             closed = text.find(mark[0], mark.end())
             if closed < 0:
                 return ''.join(parts) + text[copied:]
-            value, at = text[mark.end():closed], closed + 1
+            value, at = text[mark.end() : closed], closed + 1
             if '<' in value and '\n' not in value:
-                parts += [text[copied:mark.end()], value.replace('<', '&lt;')]
+                parts += [text[copied : mark.end()], value.replace('<', '&lt;')]
                 copied = closed
     return ''.join(parts) + text[copied:]
 

@@ -73,11 +73,13 @@ def rounded(values: FloatArray) -> FloatArray:
 
 def tensor(inertial: Inertial) -> FloatArray:
     """Return the 3x3 inertia tensor about the centre of mass, in the axes of `inertial.pose`."""
-    return np.array([
-        [inertial.ixx, inertial.ixy, inertial.ixz],
-        [inertial.ixy, inertial.iyy, inertial.iyz],
-        [inertial.ixz, inertial.iyz, inertial.izz],
-    ])
+    return np.array(
+        [
+            [inertial.ixx, inertial.ixy, inertial.ixz],
+            [inertial.ixy, inertial.iyy, inertial.iyz],
+            [inertial.ixz, inertial.iyz, inertial.izz],
+        ]
+    )
 
 
 def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
@@ -105,9 +107,14 @@ def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
         total += inertial.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     mass, centre, total = round(mass, _DIGITS), rounded(centre), rounded(total)
     return Inertial(
-        mass, Pose(as_vector(centre)),
-        ixx=float(total[0, 0]), iyy=float(total[1, 1]), izz=float(total[2, 2]),
-        ixy=float(total[0, 1]), ixz=float(total[0, 2]), iyz=float(total[1, 2]),
+        mass,
+        Pose(as_vector(centre)),
+        ixx=float(total[0, 0]),
+        iyy=float(total[1, 1]),
+        izz=float(total[2, 2]),
+        ixy=float(total[0, 1]),
+        ixz=float(total[0, 2]),
+        iyz=float(total[1, 2]),
     )
 
 
@@ -116,9 +123,14 @@ def in_link_axes(inertial: Inertial) -> Inertial:
     turn = _matrix(inertial.pose.orientation)
     total = rounded(turn @ tensor(inertial) @ turn.T)
     return Inertial(
-        inertial.mass, Pose(inertial.pose.position),
-        ixx=float(total[0, 0]), iyy=float(total[1, 1]), izz=float(total[2, 2]),
-        ixy=float(total[0, 1]), ixz=float(total[0, 2]), iyz=float(total[1, 2]),
+        inertial.mass,
+        Pose(inertial.pose.position),
+        ixx=float(total[0, 0]),
+        iyy=float(total[1, 1]),
+        izz=float(total[2, 2]),
+        ixy=float(total[0, 1]),
+        ixz=float(total[0, 2]),
+        iyz=float(total[1, 2]),
     )
 
 
@@ -138,8 +150,12 @@ def possible(inertial: Inertial) -> Inertial:
     nearest = rounded(axes @ np.diag(_sums_of_two(moments)) @ axes.T)
     return replace(
         inertial,
-        ixx=float(nearest[0, 0]), iyy=float(nearest[1, 1]), izz=float(nearest[2, 2]),
-        ixy=float(nearest[0, 1]), ixz=float(nearest[0, 2]), iyz=float(nearest[1, 2]),
+        ixx=float(nearest[0, 0]),
+        iyy=float(nearest[1, 1]),
+        izz=float(nearest[2, 2]),
+        ixy=float(nearest[0, 1]),
+        ixz=float(nearest[0, 2]),
+        iyz=float(nearest[1, 2]),
     )
 
 
@@ -185,8 +201,14 @@ def regularised(inertial: Inertial) -> Inertial:
     ball = 0.4 * inertial.mass * STAND_IN_RADIUS**2
     ixx, iyy, izz = (moment if moment > zero else ball for moment in moments)
     return replace(
-        inertial, pose=Pose(inertial.pose.position, axes),
-        ixx=ixx, iyy=iyy, izz=izz, ixy=0.0, ixz=0.0, iyz=0.0,
+        inertial,
+        pose=Pose(inertial.pose.position, axes),
+        ixx=ixx,
+        iyy=iyy,
+        izz=izz,
+        ixy=0.0,
+        ixz=0.0,
+        iyz=0.0,
     )
 
 
@@ -232,9 +254,12 @@ def mobility(link: LinkSpec, place: Vector, turn: Quaternion) -> FloatArray:
     loose = axes @ np.linalg.inv(tensor(inertial)) @ axes.T
     x, y, z = _matrix(turn) @ np.subtract(com.position, place)
     arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.block([
-        [loose, -loose @ arm], [arm @ loose, np.eye(3) / inertial.mass - arm @ loose @ arm],
-    ])
+    return np.block(
+        [
+            [loose, -loose @ arm],
+            [arm @ loose, np.eye(3) / inertial.mass - arm @ loose @ arm],
+        ]
+    )
 
 
 def _matrix(q: Quaternion) -> FloatArray:
@@ -246,5 +271,6 @@ def _quaternion(m: FloatArray) -> Quaternion:
 
     4 w^2 = 1 + trace; the first three are 4 w (x, y, z).
     """
-    return normalise(as_quaternion((
-        m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1.0 + np.trace(m))))
+    return normalise(
+        as_quaternion((m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1.0 + np.trace(m)))
+    )

@@ -24,9 +24,19 @@ def _material(
     both_sides: bool = False,
 ) -> Material:
     """Return a material of the colour `rgb`, which is also what is not given of its reflection."""
-    return Material((*rgb, alpha), '', Reflection(
-        rgb if ambient is None else ambient, rgb if diffuse is None else diffuse, specular,
-        shininess, emissive, lit, both_sides))
+    return Material(
+        (*rgb, alpha),
+        '',
+        Reflection(
+            rgb if ambient is None else ambient,
+            rgb if diffuse is None else diffuse,
+            specular,
+            shininess,
+            emissive,
+            lit,
+            both_sides,
+        ),
+    )
 
 
 def _glow(rgb: Vector, reflected: Vector = _WHITE) -> Material:
@@ -42,8 +52,12 @@ def scale(colour: Vector, factor: float) -> Vector:
 def _textured(mean: Vector, ambient: float, diffuse: float, *specular: float) -> Material:
     grey, shininess = specular or (0.0, 0.0)
     return _material(
-        mean, (grey, grey, grey), shininess,
-        ambient=scale(mean, ambient), diffuse=scale(mean, diffuse))
+        mean,
+        (grey, grey, grey),
+        shininess,
+        ambient=scale(mean, ambient),
+        diffuse=scale(mean, diffuse),
+    )
 
 
 _GREY = _material((0.7, 0.7, 0.7), (0.01, 0.01, 0.01), 1.5, ambient=(0.3, 0.3, 0.3))
@@ -69,8 +83,9 @@ _MATERIALS: dict[str, Material] = {
     'Turquoise': _material((0.0, 1.0, 1.0), _DIM, 1.0),
     'Orange': _material((1.0, 0.5088, 0.0468), (0.5, 0.5, 0.5), 128.0),
     'Indigo': _material((0.33, 0.0, 0.5), _DIM, 1.0),
-    'Gold': _material((0.8, 0.64869, 0.12076), (0.4, 0.4, 0.4), 12.5,
-                      ambient=(0.4, 0.24869, 0.020759)),
+    'Gold': _material(
+        (0.8, 0.64869, 0.12076), (0.4, 0.4, 0.4), 12.5, ambient=(0.4, 0.24869, 0.020759)
+    ),
     'Chrome': _material((0.8, 0.8, 0.8), ambient=_WHITE, diffuse=_WHITE),
     'WhiteGlow': _glow(_WHITE),
     'RedGlow': _glow((1.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
@@ -123,12 +138,18 @@ def material_of_colours(
     """
     own = base.reflection
     shown = diffuse or ambient
-    return Material(shown or base.rgba, base.script, Reflection(
-        own.ambient if ambient is None else ambient[:3],
-        own.diffuse if diffuse is None else diffuse[:3],
-        own.specular if specular is None else specular[:3],
-        own.shininess,
-        own.emissive if emissive is None else emissive[:3],
-        own.lit,
-        own.both_sides,
-    ), base.image, base.script_file)
+    return Material(
+        shown or base.rgba,
+        base.script,
+        Reflection(
+            own.ambient if ambient is None else ambient[:3],
+            own.diffuse if diffuse is None else diffuse[:3],
+            own.specular if specular is None else specular[:3],
+            own.shininess,
+            own.emissive if emissive is None else emissive[:3],
+            own.lit,
+            own.both_sides,
+        ),
+        base.image,
+        base.script_file,
+    )

@@ -86,8 +86,10 @@ class Surface:
 
     def meets(self, other: 'Surface') -> bool:
         """Tell whether two collisions collide by their bitmasks, by SDF's rule."""
-        return bool(self.category_bitmask & other.collide_bitmask
-                    | other.category_bitmask & self.collide_bitmask)
+        return bool(
+            self.category_bitmask & other.collide_bitmask
+            | other.category_bitmask & self.collide_bitmask
+        )
 
     @property
     def greatest_mu(self) -> float:

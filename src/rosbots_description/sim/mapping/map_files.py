@@ -28,7 +28,11 @@ def write_map(grid: OccupancyGrid, path: str, overwrite: bool = False) -> tuple[
     x, y = grid.origin
     image, place = f'{stem}.pgm', f'{stem}.yaml'
     write_file(image, f'P5\n{columns} {rows}\n255\n'.encode() + cells.tobytes(), overwrite)
-    write_file(place, PLACE.format(image=json.dumps(os.path.basename(image)), x=x, y=y,
-                                   resolution=grid.resolution).encode(), overwrite)
+    write_file(
+        place,
+        PLACE.format(
+            image=json.dumps(os.path.basename(image)), x=x, y=y, resolution=grid.resolution
+        ).encode(),
+        overwrite,
+    )
     return image, place
-

@@ -27,8 +27,14 @@ class OccupancyGrid:
     left_out: tuple[str, ...] = ()  # models
 
 
-def occupancy_grid(world: World, height: float, resolution: float = 0.05, *,
-                   without: Collection[str] = (), margin: float = 1.0) -> OccupancyGrid:
+def occupancy_grid(
+    world: World,
+    height: float,
+    resolution: float = 0.05,
+    *,
+    without: Collection[str] = (),
+    margin: float = 1.0,
+) -> OccupancyGrid:
     """Return the cells that collision shapes occupy at a height, exactly.
 
     A cell is occupied if a shape has a part in it, however small. Models with joints, such as
@@ -46,22 +52,27 @@ def occupancy_grid(world: World, height: float, resolution: float = 0.05, *,
         ValueError: a number is not finite, `resolution` not positive or `margin` negative.
     """
     if not all(map(math.isfinite, (height, resolution, margin))) or not (
-            resolution > 0.0 <= margin):
-        raise ValueError(f'a map takes a finite height, a positive resolution and a margin of at '
-                         f'least 0, not {height}, {resolution} and {margin}')
+        resolution > 0.0 <= margin
+    ):
+        raise ValueError(
+            f'a map takes a finite height, a positive resolution and a margin of at '
+            f'least 0, not {height}, {resolution} and {margin}'
+        )
     for name in without:
         if name not in world.models:
             raise NotFoundError(f"there is no model '{name}'; models: {', '.join(world.models)}")
-    left_out = tuple(name for name, model in world.models.items()
-                     if name in without or model.joints)
+    left_out = tuple(
+        name for name, model in world.models.items() if name in without or model.joints
+    )
     sections = list(_sections(world, height, left_out))
-    points = np.concatenate([one.segments.reshape(-1, 2) for one in sections]
-                            or [np.zeros((1, 2))])
+    points = np.concatenate([one.segments.reshape(-1, 2) for one in sections] or [np.zeros((1, 2))])
     low = np.floor((points.min(axis=0) - margin) / resolution)
     columns, rows = (np.ceil((points.max(axis=0) + margin) / resolution) - low).tolist()
     if not rows * columns <= MOST:
-        raise SimError(f'a map of {columns:.0f} x {rows:.0f} cells is too large; {MOST} are drawn: '
-                       'choose a coarser resolution, or leave models out')
+        raise SimError(
+            f'a map of {columns:.0f} x {rows:.0f} cells is too large; {MOST} are drawn: '
+            'choose a coarser resolution, or leave models out'
+        )
     occupied = _occupied(sections, low, resolution, (int(rows), int(columns)))
     x, y = (low * resolution).tolist()
     return OccupancyGrid(occupied, (x, y), resolution, left_out)
@@ -77,8 +88,9 @@ def _sections(world: World, height: float, left_out: Collection[str]) -> Iterato
                     yield one
 
 
-def _occupied(sections: list[Section], low: NDArray[np.float64], resolution: float,
-              shape: tuple[int, int]) -> NDArray[np.bool_]:
+def _occupied(
+    sections: list[Section], low: NDArray[np.float64], resolution: float, shape: tuple[int, int]
+) -> NDArray[np.bool_]:
     """Return the cells that sections have parts in."""
     # Begins and ends of runs of cells along rows: their sums count the runs over each cell.
     change = np.zeros((shape[0], shape[1] + 1), np.int32)
@@ -105,8 +117,9 @@ def _runs(segments: NDArray[np.float64]) -> tuple[NDArray[np.intp], ...]:
     which = np.repeat(np.arange(len(segments)), counts)
     row = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + lowest[which]
     rise = np.where(y1 > y0, y1 - y0, 1.0)
-    ends = [x0[which] + (x1 - x0)[which] * np.clip((border - y0[which]) / rise[which], 0.0, 1.0)
-            for border in (row, row + 1)]
+    ends = [
+        x0[which] + (x1 - x0)[which] * np.clip((border - y0[which]) / rise[which], 0.0, 1.0)
+        for border in (row, row + 1)
+    ]
     ends[1] = np.where((y1 > y0)[which], ends[1], x1[which])
-    return row, *(np.floor(one).astype(np.intp)
-                  for one in (np.minimum(*ends), np.maximum(*ends)))
+    return row, *(np.floor(one).astype(np.intp) for one in (np.minimum(*ends), np.maximum(*ends)))

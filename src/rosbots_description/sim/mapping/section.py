@@ -42,21 +42,28 @@ def section(geometry: Geometry, pose: Pose, height: float) -> Section:
             return _region(_placed(signs * size, pose)[_EDGES], height)
         case Cylinder(radius, length):
             ring = radius * _circle()
-            low, high = (np.column_stack((ring, np.full(SIDES, end * length)))
-                         for end in (-0.5, 0.5))
-            edges = np.concatenate([
-                np.stack((low, high), axis=1),
-                *(np.stack((one, np.roll(one, 1, axis=0)), axis=1) for one in (low, high))])
+            low, high = (
+                np.column_stack((ring, np.full(SIDES, end * length))) for end in (-0.5, 0.5)
+            )
+            edges = np.concatenate(
+                [
+                    np.stack((low, high), axis=1),
+                    *(np.stack((one, np.roll(one, 1, axis=0)), axis=1) for one in (low, high)),
+                ]
+            )
             return _region(_placed(edges, pose), height)
         case Sphere(radius):
             x, y, z = pose.position
             if abs(height - z) >= radius:
                 return NOTHING
-            return _convex((x, y) + math.sqrt(radius ** 2 - (height - z) ** 2) * _circle())
+            return _convex((x, y) + math.sqrt(radius**2 - (height - z) ** 2) * _circle())
         case Mesh(path, scale):
             triangles = [part.vertices[part.faces] for part in read_mesh(path).parts]
-            return _surfaces(_placed(np.concatenate(triangles) * scale, pose), height,
-                             float(np.prod(np.sign(scale))))
+            return _surfaces(
+                _placed(np.concatenate(triangles) * scale, pose),
+                height,
+                float(np.prod(np.sign(scale))),
+            )
         case Plane():
             return NOTHING
 

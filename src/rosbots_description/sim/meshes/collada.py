@@ -77,13 +77,21 @@ def _triangles(
         texcoords = primitive.texcoordset[0][primitive.texcoord_indexset[0]].reshape(-1, 2)
     effect = effects.get(primitive.material)
     yield ColladaPart(
-        vertices, faces, normals, matrix, None if effect is None else _colour(effect),
-        isinstance(getattr(effect, 'diffuse', None), Map), _reflection(effect), texcoords,
-        _image(effect))
+        vertices,
+        faces,
+        normals,
+        matrix,
+        None if effect is None else _colour(effect),
+        isinstance(getattr(effect, 'diffuse', None), Map),
+        _reflection(effect),
+        texcoords,
+        _image(effect),
+    )
 
 
 def _reflection(effect: Effect | None) -> Reflection:
     """Return how a material answers to light; what it does not say is as in Gazebo."""
+
     def colour(name: str, default: Vector) -> Vector:
         given = getattr(effect, name, None)
         if not isinstance(given, tuple | list) or not np.isfinite(given[:3]).all():
@@ -93,8 +101,12 @@ def _reflection(effect: Effect | None) -> Reflection:
 
     shininess = getattr(effect, 'shininess', None)
     return Reflection(
-        colour('ambient', _AMBIENT), colour('diffuse', _DIFFUSE), colour('specular', _BLACK),
-        float(shininess) if isinstance(shininess, float | int) else 0.0, colour('emission', _BLACK))
+        colour('ambient', _AMBIENT),
+        colour('diffuse', _DIFFUSE),
+        colour('specular', _BLACK),
+        float(shininess) if isinstance(shininess, float | int) else 0.0,
+        colour('emission', _BLACK),
+    )
 
 
 def _image(effect: Effect | None) -> str:

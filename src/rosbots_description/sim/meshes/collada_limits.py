@@ -65,7 +65,8 @@ def _refuse_unknown_positions(root: etree._Element, document: bytes) -> None:
     if not re.search(rb'[\s>]-?nan\b', document, re.IGNORECASE):
         return
     positions = {
-        use.get('source', '').removeprefix('#') for use in root.iterfind('.//{*}vertices/{*}input')
+        use.get('source', '').removeprefix('#')
+        for use in root.iterfind('.//{*}vertices/{*}input')
         if use.get('semantic') == 'POSITION'
     }
     for source in root.iterfind('.//{*}source'):

@@ -73,8 +73,9 @@ class MeshData:
         starts = np.cumsum([0, *(len(part.vertices) for part in self.parts)])
         return (
             np.concatenate([part.vertices for part in self.parts]),
-            np.concatenate([part.faces + start
-                            for part, start in zip(self.parts, starts, strict=False)]),
+            np.concatenate(
+                [part.faces + start for part, start in zip(self.parts, starts, strict=False)]
+            ),
         )
 
 
@@ -134,7 +135,8 @@ def _state(path: str) -> tuple[int, int]:
     """Return modification time [ns] and size, to detect changes of a file."""
     if not os.path.exists(path):
         raise _fault(
-            path, 'does not exist or cannot be reached; check name and package', AbsentError)
+            path, 'does not exist or cannot be reached; check name and package', AbsentError
+        )
     state = regular_state(path, 'mesh file')
     return state.st_mtime_ns, state.st_size
 
@@ -142,8 +144,12 @@ def _state(path: str) -> tuple[int, int]:
 @lru_cache(maxsize=4096)
 def _ends(path: str, mtime_ns: int, size: int) -> FloatArray:
     parts = [part.vertices for part in _read(path, mtime_ns, size).parts]
-    return np.array([np.min([part.min(axis=0) for part in parts], axis=0),
-                     np.max([part.max(axis=0) for part in parts], axis=0)])
+    return np.array(
+        [
+            np.min([part.min(axis=0) for part in parts], axis=0),
+            np.max([part.max(axis=0) for part in parts], axis=0),
+        ]
+    )
 
 
 @lru_cache(maxsize=16)
@@ -153,8 +159,11 @@ def _read(path: str, mtime_ns: int, size: int) -> MeshData:
         raise _fault(path, f"format '{extension}' is not read; convert it to {', '.join(FORMATS)}")
     content = read_file(path, MAX_MESH_BYTES, 'mesh file')
     parts = _check_parts(path, _parse(path, extension, content))
-    return MeshData(hashlib.sha256(content).hexdigest(), _by_colour(_decimate(path, parts)),
-                    any(part.textured for part in parts))
+    return MeshData(
+        hashlib.sha256(content).hexdigest(),
+        _by_colour(_decimate(path, parts)),
+        any(part.textured for part in parts),
+    )
 
 
 def _fault(path: str, sentence: str, kind: type[ModelError] = ModelError) -> ModelError:
@@ -204,7 +213,8 @@ def _obj_part(part: ObjPart) -> MeshPart:
         normals = _turn_normals(normals, np.eye(3), len(part.vertices))
     rgba = _colour(None if part.colour is None else np.append(part.colour, 1.0))
     return MeshPart(
-        part.vertices, part.faces, normals, rgba, part.textured, Reflection(rgba[:3], rgba[:3]))
+        part.vertices, part.faces, normals, rgba, part.textured, Reflection(rgba[:3], rgba[:3])
+    )
 
 
 def _parse_stl(content: bytes, path: str) -> list[MeshPart]:
@@ -228,16 +238,26 @@ def _collada_part(part: 'ColladaPart', unit: float, path: str) -> MeshPart:
     if texcoords is not None and not np.isfinite(texcoords).all():
         texcoords = None
     image = _image_file(part.image, path) if part.image and texcoords is not None else ''
-    return MeshPart(vertices, faces, normals, _colour(part.rgba), part.textured, part.reflection,
-                    texcoords, image)
+    return MeshPart(
+        vertices,
+        faces,
+        normals,
+        _colour(part.rgba),
+        part.textured,
+        part.reflection,
+        texcoords,
+        image,
+    )
 
 
 def _image_file(name: str, path: str) -> str:
     """Return where an image is that a mesh file names: beside it, or in its model; else ''."""
     folder = os.path.dirname(path)
     model = os.path.dirname(folder)
-    for place in (os.path.join(folder, name),
-                  os.path.join(model, 'materials', 'textures', os.path.basename(name))):
+    for place in (
+        os.path.join(folder, name),
+        os.path.join(model, 'materials', 'textures', os.path.basename(name)),
+    ):
         if within(place, model) and os.path.isfile(place):
             return os.path.realpath(place)
     logger.warning("mesh file '%s' names the image '%s', which is not there", path, name)
@@ -291,12 +311,16 @@ def _decimate(path: str, parts: list[MeshPart]) -> list[MeshPart]:
         vertices, faces, kept, cell = decimated(part.vertices, part.faces, most)
         normals = None if part.normals is None else part.normals[kept]
         texcoords = None if part.texcoords is None else part.texcoords[kept]
-        thin.append(replace(
-            part, vertices=vertices, faces=faces, normals=normals, texcoords=texcoords))
+        thin.append(
+            replace(part, vertices=vertices, faces=faces, normals=normals, texcoords=texcoords)
+        )
         widest = max(widest, cell)
     logger.warning(
-        "mesh file '%s' has %d triangles; it is decimated to %d, on a grid of %.2g m", path,
-        count, sum(len(part.faces) for part in thin), widest,
+        "mesh file '%s' has %d triangles; it is decimated to %d, on a grid of %.2g m",
+        path,
+        count,
+        sum(len(part.faces) for part in thin),
+        widest,
     )
     return thin
 
@@ -315,6 +339,7 @@ def _by_colour(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
         for array in (vertices, faces, normals, texcoords):
             if array is not None:
                 array.setflags(write=False)  # the cached array is shared by all callers
-        joined.append(replace(
-            group[0], vertices=vertices, faces=faces, normals=normals, texcoords=texcoords))
+        joined.append(
+            replace(group[0], vertices=vertices, faces=faces, normals=normals, texcoords=texcoords)
+        )
     return tuple(joined)

@@ -62,7 +62,8 @@ def read_obj(content: bytes, read_library: ReadLibrary) -> list[ObjPart]:
     """
     # A file may have millions of lines: decode them one by one, and store numbers, not strings.
     lines = TextIOWrapper(
-        BytesIO(content.replace(b'\\\n', b' ')), 'utf-8', errors='replace', newline='\n')
+        BytesIO(content.replace(b'\\\n', b' ')), 'utf-8', errors='replace', newline='\n'
+    )
     positions, normals = array('d'), array('d')
     groups: dict[str, _Faces] = defaultdict(_Faces)
     libraries: dict[str, None] = {}

@@ -34,7 +34,8 @@ def read_stl(content: bytes) -> FloatArray:
     if len(content) < _HEADER or there < promised:
         raise ValueError(
             f'its header promises {promised} triangles, but only {max(0, there)} are there'
-            if len(content) >= _HEADER else 'it is shorter than the header of a binary STL'
+            if len(content) >= _HEADER
+            else 'it is shorter than the header of a binary STL'
         )
     triangles = np.frombuffer(content, _TRIANGLE, promised, _HEADER)
     return triangles['corners'].astype(float)

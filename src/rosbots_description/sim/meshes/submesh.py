@@ -61,7 +61,9 @@ def _parse(path: str) -> etree._Element:
 
 def _keep_only(root: etree._Element, path: str, name: str) -> None:
     shown = [
-        (node, element) for node in root.iterfind('.//{*}node') for element in node
+        (node, element)
+        for node in root.iterfind('.//{*}node')
+        for element in node
         if isinstance(element.tag, str) and etree.QName(element).localname in _SHOWN
     ]
     names = {_name(node) for node, _ in shown}

@@ -47,8 +47,10 @@ class TriangleTree:
             start: (p, 3) [m].
             way: (p, 3) unit vectors.
         """
-        found = [self._cast(start[i:i + _RAYS], way[i:i + _RAYS])
-                 for i in range(0, len(start), _RAYS)]
+        found = [
+            self._cast(start[i : i + _RAYS], way[i : i + _RAYS])
+            for i in range(0, len(start), _RAYS)
+        ]
         return np.concatenate([np.empty(0), *found])
 
     def _cast(self, start: Floats, way: Floats) -> Floats:

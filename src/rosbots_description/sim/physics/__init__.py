@@ -16,6 +16,16 @@ from .engine import (
 )
 
 __all__ = [
-    'CollisionName', 'CompiledModel', 'Contact', 'CrashSandbox', 'EngineBody', 'EngineFactory',
-    'JointState', 'Motion', 'PhysicsEngine', 'Snapshot', 'Wrench', 'make_engine',
+    'CollisionName',
+    'CompiledModel',
+    'Contact',
+    'CrashSandbox',
+    'EngineBody',
+    'EngineFactory',
+    'JointState',
+    'Motion',
+    'PhysicsEngine',
+    'Snapshot',
+    'Wrench',
+    'make_engine',
 ]

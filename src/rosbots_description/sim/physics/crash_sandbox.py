@@ -55,7 +55,8 @@ class CrashSandbox:
             make_engine: makes an equal one, for a process that replaces one that was killed.
         """
         self._children = ForkServer(
-            partial(_prepared, engine), 'crash_sandbox', partial(_prepared_anew, make_engine))
+            partial(_prepared, engine), 'crash_sandbox', partial(_prepared_anew, make_engine)
+        )
         self._passed: dict[bytes, None] = {}
         self._under_way: set[bytes] = set()
         self._changed = threading.Condition()  # guards the passed and the pending contents
@@ -107,7 +108,10 @@ class CrashSandbox:
                 self._changed.notify_all()
 
     def _test(
-        self, name: str, model: CompiledModel, physics: PhysicsSettings,
+        self,
+        name: str,
+        model: CompiledModel,
+        physics: PhysicsSettings,
         is_wanted: Callable[[], bool],
     ) -> bool:
         """Return whether the engine survived a model; False if that is unknown."""
@@ -115,12 +119,14 @@ class CrashSandbox:
         try:
             report = self._children.run(pickle.dumps((model, physics)), allowance, is_wanted)
         except OSError as error:
-            logger.warning("model '%s' was not tested in the sandbox, since the operating system "
-                           'failed (%s)', name, error.strerror)
+            logger.warning(
+                "model '%s' was not tested in the sandbox, since the operating system failed (%s)",
+                name,
+                error.strerror,
+            )
             return False
         except Cancelled:
-            raise ModelError(
-                f"model '{name}' is rejected: its client has disconnected") from None
+            raise ModelError(f"model '{name}' is rejected: its client has disconnected") from None
         except Killed as killed:
             report = _exit_reason(killed.exit_code, allowance)
         if report.startswith(_SYSTEM):
@@ -147,8 +153,7 @@ def _exit_reason(exit_code: int, allowance: float) -> str:
     """Return the reason why a process ended, as a clause."""
     match -exit_code:
         case signal.SIGPROF:
-            return ('the physics engine needed more than '
-                    f'{allowance:.1f} s of processor time for it')
+            return f'the physics engine needed more than {allowance:.1f} s of processor time for it'
         case signal.SIGALRM:
             return f'the physics engine hung for {HUNG_TIME:g} s'
         case signal.SIGKILL:

@@ -206,13 +206,15 @@ class PhysicsEngine(Protocol):
     def motor(self, body: EngineBody, joint: str) -> tuple[float, float]:
         """Return the motor's target velocity [rad/s or m/s] and greatest effort [N m or N]."""
 
-    def set_joint_motor(
-        self, body: EngineBody, joint: str, velocity: float, effort: float
-    ) -> None:
+    def set_joint_motor(self, body: EngineBody, joint: str, velocity: float, effort: float) -> None:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
 
     def apply_wrench(
-        self, body: EngineBody, link: str, force: Vector, torque: Vector,
+        self,
+        body: EngineBody,
+        link: str,
+        force: Vector,
+        torque: Vector,
         place: Vector | None = None,
     ) -> None:
         """Apply a force [N] and a torque [N m] to a link during the next step, added to others.
@@ -246,9 +248,7 @@ class PhysicsEngine(Protocol):
             compliances: along the axis, and across it [m/s per N].
         """
 
-    def contacts(
-        self, body: EngineBody | None = None, link: str | None = None
-    ) -> list[Contact]:
+    def contacts(self, body: EngineBody | None = None, link: str | None = None) -> list[Contact]:
         """Return the contacts in the last step; of a model, or of one link, as `one` of each.
 
         Each contact is listed once, one within the model with its first link as `one`.

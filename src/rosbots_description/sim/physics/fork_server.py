@@ -133,14 +133,20 @@ class ForkServer:
             code = ended.end()
             if self._replacement is None:
                 raise ServerEndedError from None
-            logger.warning('the process %s has ended (%s); it is started again', self._name,
-                           f'killed by signal {-code}' if code < 0 else f'exit code {code}')
+            logger.warning(
+                'the process %s has ended (%s); it is started again',
+                self._name,
+                f'killed by signal {-code}' if code < 0 else f'exit code {code}',
+            )
             ours, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
             with theirs:
                 ours.send(pickle.dumps((self._replacement, self._name)))
                 process = os.posix_spawn(
-                    sys.executable, [sys.executable, '-P', '-c', _PROGRAM, *sys.path], os.environ,
-                    file_actions=[(os.POSIX_SPAWN_DUP2, theirs.fileno(), 0)])
+                    sys.executable,
+                    [sys.executable, '-P', '-c', _PROGRAM, *sys.path],
+                    os.environ,
+                    file_actions=[(os.POSIX_SPAWN_DUP2, theirs.fileno(), 0)],
+                )
             self._server = _Server(process, ours)
 
 
@@ -331,9 +337,7 @@ def _fork_child(work: Work, allowance: float, files: list[int]) -> _Child | None
             os.close(death)
 
 
-def _run_child(
-    work: Work, allowance: float, report: int, death: int, parent: int
-) -> NoReturn:
+def _run_child(work: Work, allowance: float, report: int, death: int, parent: int) -> NoReturn:
     """Process the payload and write the report; the end of this process closes `death`."""
     try:
         _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

@@ -31,8 +31,9 @@ def box_around(spec: ModelSpec, pose: Pose) -> FloatArray | None:
     Args:
         pose: of the model, in the world.
     """
-    boxes = [box for _, box in _boxes(
-        ((link, compose(pose, link.pose)) for link in spec.links), extent)]
+    boxes = [
+        box for _, box in _boxes(((link, compose(pose, link.pose)) for link in spec.links), extent)
+    ]
     if not boxes:
         return None
     return np.array([np.min(boxes, axis=0)[0], np.max(boxes, axis=0)[1]])
@@ -69,8 +70,16 @@ class _Obstacles:
     """Boxes around all shapes in the world."""
 
     def __init__(self, world: World) -> None:
-        found = list(_boxes(((link.spec, link.pose) for model in world.models.values()
-                             for link in model.links.values()), rough_extent))
+        found = list(
+            _boxes(
+                (
+                    (link.spec, link.pose)
+                    for model in world.models.values()
+                    for link in model.links.values()
+                ),
+                rough_extent,
+            )
+        )
         self._boxes = np.reshape([box for _, box in found], (-1, 2, 3))
         # Within the box around a mesh there may be room, as in a building.
         self._hollow = np.array([isinstance(shape, Mesh) for shape, _ in found], bool)

@@ -12,6 +12,14 @@ from .registry import (
 )
 
 __all__ = [
-    'PAGE', 'library_name', 'library_remark', 'missing_libraries', 'plugin_class', 'register',
-    'register_in_sensor', 'register_sensor', 'sensor_class', 'sensor_plugin_class',
+    'PAGE',
+    'library_name',
+    'library_remark',
+    'missing_libraries',
+    'plugin_class',
+    'register',
+    'register_in_sensor',
+    'register_sensor',
+    'sensor_class',
+    'sensor_plugin_class',
 ]

@@ -9,19 +9,48 @@ _CLOSE = 0.9  # similarity above which a name counts as misspelt
 
 # Of gazebo_ros_pkgs; the built-in ones are looked up first.
 _OF_GAZEBO_ROS = (
-    'skid_steer_drive', 'planar_move', 'tricycle_drive', 'joint_state_publisher',
-    'joint_pose_trajectory', 'laser', 'gpu_laser', 'block_laser', 'range', 'camera',
-    'multicamera', 'triggered_camera', 'triggered_multicamera', 'depth_camera', 'openni_kinect',
-    'prosilica', 'imu', 'imu_sensor', 'p3d', 'bumper', 'ft_sensor', 'f3d', 'force', 'hand_of_god',
-    'elevator', 'harness', 'wheel_slip', 'vacuum_gripper', 'projector', 'video', 'control',
+    'skid_steer_drive',
+    'planar_move',
+    'tricycle_drive',
+    'joint_state_publisher',
+    'joint_pose_trajectory',
+    'laser',
+    'gpu_laser',
+    'block_laser',
+    'range',
+    'camera',
+    'multicamera',
+    'triggered_camera',
+    'triggered_multicamera',
+    'depth_camera',
+    'openni_kinect',
+    'prosilica',
+    'imu',
+    'imu_sensor',
+    'p3d',
+    'bumper',
+    'ft_sensor',
+    'f3d',
+    'force',
+    'hand_of_god',
+    'elevator',
+    'harness',
+    'wheel_slip',
+    'vacuum_gripper',
+    'projector',
+    'video',
+    'control',
 )
 
 
 def missing_libraries() -> list[str]:
     """Return the file names of Gazebo's libraries that are known and not built in."""
     built_in = known_filenames()
-    return [name for name in (f'libgazebo_ros_{short}.so' for short in _OF_GAZEBO_ROS)
-            if name not in built_in]
+    return [
+        name
+        for name in (f'libgazebo_ros_{short}.so' for short in _OF_GAZEBO_ROS)
+        if name not in built_in
+    ]
 
 
 def library_remark(filename: str) -> str:

@@ -14,7 +14,20 @@ from .force import Force, HandOfGod, WheelSlip
 from .state import P3D, JointPoseTrajectory, JointStatePublisher
 
 __all__ = [
-    'P3D', 'DiffDrive', 'Drive', 'Force', 'ForceBasedMove', 'HandOfGod', 'JointPoseTrajectory',
-    'JointStatePublisher', 'ModelPlugin', 'PeriodicPlugin', 'PlanarMove', 'RidgebackForceBasedMove',
-    'SkidSteerDrive', 'TricycleDrive', 'WheelSlip', 'offsets_in_gazebo',
+    'P3D',
+    'DiffDrive',
+    'Drive',
+    'Force',
+    'ForceBasedMove',
+    'HandOfGod',
+    'JointPoseTrajectory',
+    'JointStatePublisher',
+    'ModelPlugin',
+    'PeriodicPlugin',
+    'PlanarMove',
+    'RidgebackForceBasedMove',
+    'SkidSteerDrive',
+    'TricycleDrive',
+    'WheelSlip',
+    'offsets_in_gazebo',
 ]

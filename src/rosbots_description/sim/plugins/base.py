@@ -75,7 +75,8 @@ class ModelPlugin(Plugin):
         unread = self.params.unread()
         if unread:
             logger.warning(
-                '%snot read by this plugin: %s%s', self.log_prefix,
+                '%snot read by this plugin: %s%s',
+                self.log_prefix,
                 ', '.join(f'<{tag}>' for tag in unread),
                 ''.join(hint for tag, hint in self.hints.items() if tag in unread),
             )
@@ -120,8 +121,7 @@ class ModelPlugin(Plugin):
         try:
             return self.model.locate(name)
         except NotFoundError as error:
-            raise PluginError(
-                f'{self.log_prefix}{tag}: {name} does not exist: {error}') from None
+            raise PluginError(f'{self.log_prefix}{tag}: {name} does not exist: {error}') from None
 
     def joint(self, name: str, what: str) -> 'Joint':
         """Return a joint by its name; `what` describes it in the message of the `PluginError`."""

@@ -23,7 +23,10 @@ class Params:
     """
 
     def __init__(
-        self, element: Element, prefix: str = '', missing: Missing | None = None,
+        self,
+        element: Element,
+        prefix: str = '',
+        missing: Missing | None = None,
         level: int = logging.WARNING,
     ) -> None:
         """Read the tags of `element`; `missing` words the warning about a missing tag."""
@@ -88,7 +91,8 @@ class Params:
         numbers = self.read(tag, '0 0 0').split()
         if len(numbers) != 3:
             raise PluginError(
-                f"{self.prefix}<{tag}> is '{' '.join(numbers)}'; it takes three numbers")
+                f"{self.prefix}<{tag}> is '{' '.join(numbers)}'; it takes three numbers"
+            )
         x, y, z = (self._number(tag, number) for number in numbers)
         return (x, y, z)
 

@@ -32,11 +32,13 @@ class Descriptions:
 
     def __init__(self, package_path: Paths, model_path: Paths) -> None:
         self._package_path = tuple(package_path)
-        self.find_model: FindModel = ModelSearch([
-            *model_path,
-            lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
-            os.path.expanduser('~/.gazebo/models'),
-        ])
+        self.find_model: FindModel = ModelSearch(
+            [
+                *model_path,
+                lambda: path_directories(os.environ.get('GAZEBO_MODEL_PATH', '')),
+                os.path.expanduser('~/.gazebo/models'),
+            ]
+        )
         self.find_file = FileSearch([_resource_path])
 
     def packages(self, inside: str | None = None) -> PackageSearch:
@@ -59,9 +61,14 @@ class Descriptions:
             name = name or below_model_path(given).partition('/')[0]
         text, source, tag = self.text(given, arguments)
         load = load_urdf if tag == 'robot' else load_sdf
-        return load(text, name or own_name(text, source), source=source,
-                    find_package=self._packages_of(source), find_model=self.find_model,
-                    find_file=self._files_of(source))
+        return load(
+            text,
+            name or own_name(text, source),
+            source=source,
+            find_package=self._packages_of(source),
+            find_model=self.find_model,
+            find_file=self._files_of(source),
+        )
 
     def text(
         self, description: Description, arguments: Mapping[str, str]
@@ -73,8 +80,10 @@ class Descriptions:
         """
         given = os.fspath(description)
         if arguments and not given.endswith('.xacro'):
-            logger.warning('arguments are for xacro files only; %s are ignored',
-                           ', '.join(map(repr, arguments)))
+            logger.warning(
+                'arguments are for xacro files only; %s are ignored',
+                ', '.join(map(repr, arguments)),
+            )
         if given.startswith('model://'):
             given = sdf_of_include(given)
         text: str | bytes
@@ -82,12 +91,17 @@ class Descriptions:
             text, source = given, _TEXT
         else:
             source = self._path(given)
-            text = expand_xacro(source, arguments, self.packages(source)) \
-                if source.endswith('.xacro') else read_file(source, MAX_XML_BYTES, 'model file')
+            text = (
+                expand_xacro(source, arguments, self.packages(source))
+                if source.endswith('.xacro')
+                else read_file(source, MAX_XML_BYTES, 'model file')
+            )
         tag = root_tag(text)
         if tag not in ('robot', 'sdf', 'gazebo'):
-            raise ModelError(f'{source}: it is not a model; a model is XML whose root element is '
-                             f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}')
+            raise ModelError(
+                f'{source}: it is not a model; a model is XML whose root element is '
+                f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}'
+            )
         return text, source, tag
 
     def _packages_of(self, source: str) -> PackageSearch:
@@ -106,8 +120,10 @@ class Descriptions:
         package, _, inner = address.removeprefix('package://').partition('/')
         folder = self.packages()(package)
         if folder is None:
-            raise ModelError(f"package '{package}' of {address} is unknown; add the folder that "
-                             'holds it to package_path or to ROS_PACKAGE_PATH')
+            raise ModelError(
+                f"package '{package}' of {address} is unknown; add the folder that "
+                'holds it to package_path or to ROS_PACKAGE_PATH'
+            )
         return os.path.join(folder, inner)
 
 

@@ -75,8 +75,9 @@ class World(runtime.World):
 
         The arguments are those of `World`.
         """
-        world = cls(physics, package_path=package_path, model_path=model_path,
-                    make_engine=make_engine)
+        world = cls(
+            physics, package_path=package_path, model_path=model_path, make_engine=make_engine
+        )
         add_empty_world(world)
         return world
 
@@ -110,12 +111,15 @@ class World(runtime.World):
         world = cls(package_path=package_path, model_path=model_path, make_engine=make_engine)
         world.seed = seed
         try:
-            populate(world, open_world(
-                file,
-                find_model=world._descriptions.find_model,
-                find_package=world._descriptions.packages(os.fspath(file)),
-                find_file=world._descriptions.find_file,
-            ))
+            populate(
+                world,
+                open_world(
+                    file,
+                    find_model=world._descriptions.find_model,
+                    find_package=world._descriptions.packages(os.fspath(file)),
+                    find_file=world._descriptions.find_file,
+                ),
+            )
         except BaseException:
             world.close()
             raise
@@ -189,8 +193,9 @@ class World(runtime.World):
         spec, own_pose = self.read_model(model, name, arguments=arguments)
         return super().spawn(spec, spec.name, compose(pose, own_pose))
 
-    def read_model(self, model: Description, name: str = '', *,
-                   arguments: Mapping[str, str] | None = None) -> tuple[ModelSpec, Pose]:
+    def read_model(
+        self, model: Description, name: str = '', *, arguments: Mapping[str, str] | None = None
+    ) -> tuple[ModelSpec, Pose]:
         """Return the description of a model for `spawn`, and the pose that its text gives it.
 
         Args:
@@ -266,8 +271,14 @@ class World(runtime.World):
         write_world(os.path.abspath(path), sdf_of_world(spec), overwrite)
         return spec.faults
 
-    def occupancy_grid(self, height: float, resolution: float = 0.05, *,
-                       without: Collection[str] = (), margin: float = 1.0) -> OccupancyGrid:
+    def occupancy_grid(
+        self,
+        height: float,
+        resolution: float = 0.05,
+        *,
+        without: Collection[str] = (),
+        margin: float = 1.0,
+    ) -> OccupancyGrid:
         """Return the map of a horizontal section through the world; see `sim.mapping`.
 
         Args:
@@ -283,9 +294,16 @@ class World(runtime.World):
         self._require_open()
         return occupancy_grid(self, height, resolution, without=without, margin=margin)
 
-    def save_map(self, path: str | os.PathLike[str], height: float, resolution: float = 0.05, *,
-                 without: Collection[str] = (), margin: float = 1.0,
-                 overwrite: bool = False) -> OccupancyGrid:
+    def save_map(
+        self,
+        path: str | os.PathLike[str],
+        height: float,
+        resolution: float = 0.05,
+        *,
+        without: Collection[str] = (),
+        margin: float = 1.0,
+        overwrite: bool = False,
+    ) -> OccupancyGrid:
         """Write that map as NAME.pgm and NAME.yaml, for map_server; return it.
 
         Args:
@@ -309,8 +327,10 @@ class World(runtime.World):
             NotFoundError: there is none; the message lists the models that exist.
         """
         if name not in self.models:
-            raise NotFoundError(f"there is no model '{name}' in this world; its models: "
-                                f"{', '.join(self.models) or 'none'}")
+            raise NotFoundError(
+                f"there is no model '{name}' in this world; its models: "
+                f'{", ".join(self.models) or "none"}'
+            )
         return self.models[name]
 
     def step(self, steps: int = 1) -> int:
@@ -337,8 +357,9 @@ class World(runtime.World):
         elif steps is None or seconds is not None:
             raise ValueError('run takes either a number of steps or seconds=')
         elif not isinstance(steps, SupportsIndex):
-            raise ValueError(f'run takes a whole number of steps, not {steps}; '
-                             f'for a time give seconds={steps}')
+            raise ValueError(
+                f'run takes a whole number of steps, not {steps}; for a time give seconds={steps}'
+            )
         if steps < 0:
             raise ValueError(f'time goes forward only; {steps} steps cannot be made')
         return self._run(steps)
@@ -363,7 +384,8 @@ class World(runtime.World):
         """
         _require_finite('force and torque', (*force, *torque))
         self.external_forces.add(
-            link, partial(link.apply_wrench, force, torque), 0, _duration_ns(seconds))
+            link, partial(link.apply_wrench, force, torque), 0, _duration_ns(seconds)
+        )
 
     def apply_effort(self, joint: Joint, effort: float, *, seconds: float = math.inf) -> None:
         """Apply an effort to a joint from the next step on, added to its motor's; limits hold.
@@ -377,7 +399,8 @@ class World(runtime.World):
         """
         _require_finite('effort', (effort,))
         self.external_forces.add(
-            joint, partial(joint.apply_effort, effort), 0, _duration_ns(seconds))
+            joint, partial(joint.apply_effort, effort), 0, _duration_ns(seconds)
+        )
 
     def clear_forces(self, target: Link | Joint) -> None:
         """End all forces of `apply_wrench` or `apply_effort` on a link or joint."""
@@ -390,8 +413,10 @@ class World(runtime.World):
 
 def _require_viser(what: str) -> None:
     if importlib.util.find_spec('viser') is None:
-        raise SimError(f"{what} needs the Python package viser; "
-                       "pip install 'rosbots_description[web]' installs it")
+        raise SimError(
+            f'{what} needs the Python package viser; '
+            "pip install 'rosbots_description[web]' installs it"
+        )
 
 
 def _require_finite(what: str, numbers: tuple[float, ...]) -> None:

@@ -71,8 +71,17 @@ def _parts(visual: Visual) -> tuple[list[_Part], Vector]:
         case Plane(normal, (width, depth)):
             corners = unit_square(normal)
             faces = np.arange(len(corners)).reshape(-1, 3)
-            return [_Part(corners[:, :3], faces, corners[:, 3:6], None, '', material.rgba,
-                          material.reflection)], (width, depth, 1.0)
+            return [
+                _Part(
+                    corners[:, :3],
+                    faces,
+                    corners[:, 3:6],
+                    None,
+                    '',
+                    material.rgba,
+                    material.reflection,
+                )
+            ], (width, depth, 1.0)
         case Box(size):
             scale = size
         case Sphere(radius):
@@ -88,14 +97,20 @@ def _drawn(part: _Part, look: Look) -> _Part:
         return part._replace(rgba=(*part.rgba[:3], _CLEAR * part.rgba[3]))
     if look is Look.WIREFRAME:
         edges = np.sort(part.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        return part._replace(faces=np.unique(edges, axis=0), normals=None, texcoords=None, image='',
-                             reflection=replace(part.reflection, lit=False))
+        return part._replace(
+            faces=np.unique(edges, axis=0),
+            normals=None,
+            texcoords=None,
+            image='',
+            reflection=replace(part.reflection, lit=False),
+        )
     return part
 
 
 def _mesh_part(part: MeshPart, material: Material | None) -> _Part:
-    rgba, reflection = ((part.rgba, part.reflection) if material is None
-                        else (material.rgba, material.reflection))
+    rgba, reflection = (
+        (part.rgba, part.reflection) if material is None else (material.rgba, material.reflection)
+    )
     image = part.image if material is None and part.texcoords is not None else ''
     if image:
         rgba = (*reflection.diffuse, rgba[3])  # what the image is multiplied with
@@ -114,10 +129,14 @@ class _File:
         self._image_views: list[dict[str, Any]] = []
         primitives = [self._primitive(part) for part in parts]
         self._tree: dict[str, Any] = {
-            'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}],
+            'asset': {'version': '2.0'},
+            'scene': 0,
+            'scenes': [{'nodes': [0]}],
             'nodes': [{'mesh': 0, 'scale': list(map(float, scale))}],
-            'meshes': [{'primitives': primitives}], 'materials': self._materials,
-            'accessors': self._accessors, 'bufferViews': self._views,
+            'meshes': [{'primitives': primitives}],
+            'materials': self._materials,
+            'accessors': self._accessors,
+            'bufferViews': self._views,
             'buffers': [{'byteLength': len(self._data)}],
             'extensionsUsed': ['KHR_materials_unlit'],
         }
@@ -130,8 +149,14 @@ class _File:
         tree = json.dumps(self._tree).encode()
         tree += b' ' * (-len(tree) % 4)
         data = bytes(self._data)
-        chunks = (struct.pack('<I', len(tree)) + b'JSON' + tree
-                  + struct.pack('<I', len(data)) + b'BIN\0' + data)
+        chunks = (
+            struct.pack('<I', len(tree))
+            + b'JSON'
+            + tree
+            + struct.pack('<I', len(data))
+            + b'BIN\0'
+            + data
+        )
         return struct.pack('<4sII', b'glTF', 2, 12 + len(chunks)) + chunks
 
     def _primitive(self, part: _Part) -> dict[str, Any]:
@@ -142,21 +167,35 @@ class _File:
         if image is not None and part.texcoords is not None:
             attributes['TEXCOORD_0'] = self._array(part.texcoords * (1, -1) + (0, 1), 'VEC2')
         self._materials.append(_material(part, image))
-        return {'attributes': attributes, 'indices': self._indices(part.faces),
-                'mode': _TRIANGLES if part.faces.shape[1] == 3 else _LINES,
-                'material': len(self._materials) - 1}
+        return {
+            'attributes': attributes,
+            'indices': self._indices(part.faces),
+            'mode': _TRIANGLES if part.faces.shape[1] == 3 else _LINES,
+            'material': len(self._materials) - 1,
+        }
 
     def _array(self, values: FloatArray, kind: str) -> int:
         array = np.asarray(values, '<f4')
-        return self._accessor({
-            'bufferView': self._view(array.tobytes(), _VERTICES), 'componentType': _FLOAT,
-            'count': len(array), 'type': kind,
-            'min': array.min(axis=0).tolist(), 'max': array.max(axis=0).tolist()})
+        return self._accessor(
+            {
+                'bufferView': self._view(array.tobytes(), _VERTICES),
+                'componentType': _FLOAT,
+                'count': len(array),
+                'type': kind,
+                'min': array.min(axis=0).tolist(),
+                'max': array.max(axis=0).tolist(),
+            }
+        )
 
     def _indices(self, faces: IntArray) -> int:
-        return self._accessor({
-            'bufferView': self._view(faces.astype('<u4').tobytes(), _INDICES),
-            'componentType': _UNSIGNED_INT, 'count': faces.size, 'type': 'SCALAR'})
+        return self._accessor(
+            {
+                'bufferView': self._view(faces.astype('<u4').tobytes(), _INDICES),
+                'componentType': _UNSIGNED_INT,
+                'count': faces.size,
+                'type': 'SCALAR',
+            }
+        )
 
     def _accessor(self, accessor: dict[str, Any]) -> int:
         self._accessors.append(accessor)
@@ -197,9 +236,13 @@ def _material(part: _Part, image: int | None) -> dict[str, Any]:
     own, alpha = part.reflection, part.rgba[3]
     made: dict[str, Any] = {
         'pbrMetallicRoughness': {
-            'baseColorFactor': [*_linear(part.rgba[:3]), float(alpha)], 'metallicFactor': 0.0,
-            'roughnessFactor': _roughness(own)},
-        'emissiveFactor': list(_linear(own.emissive)), 'doubleSided': own.both_sides}
+            'baseColorFactor': [*_linear(part.rgba[:3]), float(alpha)],
+            'metallicFactor': 0.0,
+            'roughnessFactor': _roughness(own),
+        },
+        'emissiveFactor': list(_linear(own.emissive)),
+        'doubleSided': own.both_sides,
+    }
     if image is not None:
         made['pbrMetallicRoughness']['baseColorTexture'] = {'index': image}
     if alpha < 1.0:
@@ -218,5 +261,9 @@ def _roughness(own: Reflection) -> float:
 
 def _linear(rgb: Vector) -> Iterator[float]:
     """Return a colour as linear light, from sRGB."""
-    return (float(((np.clip(c, 0.0, 1.0) + 0.055) / 1.055) ** 2.4 if c > 0.04045
-                  else max(c, 0.0) / 12.92) for c in rgb)
+    return (
+        float(
+            ((np.clip(c, 0.0, 1.0) + 0.055) / 1.055) ** 2.4 if c > 0.04045 else max(c, 0.0) / 12.92
+        )
+        for c in rgb
+    )

@@ -61,11 +61,15 @@ class IllustratedScene:
         scene = self._mirror.scene
         self.meshes = {**self._mirror.meshes, _GRID: _grid}
         bodies = len(self._mirror.poses())
-        parts = [part._replace(appearance=part.appearance._replace(
-            ambient=part.appearance.diffuse)) for part in scene.parts]
+        parts = [
+            part._replace(appearance=part.appearance._replace(ambient=part.appearance.diffuse))
+            for part in scene.parts
+        ]
         for number, visual in enumerate(shown):
-            parts += [part._replace(casts_shadow=False) for part in visual_parts(
-                visual, bodies + number, False, self.meshes)]
+            parts += [
+                part._replace(casts_shadow=False)
+                for part in visual_parts(visual, bodies + number, False, self.meshes)
+            ]
         if self._ground is not None:
             parts.append(ScenePart(_GRID, bodies + len(shown), _IDENTITY, _GRID_LOOK, False))
         self.scene = _softened(scene)._replace(parts=tuple(parts))
@@ -80,11 +84,16 @@ class IllustratedScene:
 
     def _find_ground(self) -> float | None:
         """Return the height of the first plane that faces up [m], or None."""
-        return next((
-            link.pose.position[2] + visual.pose.position[2]
-            for model in self._world.models.values() for link in model.links.values()
-            for visual in link.spec.visuals
-            if isinstance(visual.geometry, Plane) and visual.geometry.normal == UP), None)
+        return next(
+            (
+                link.pose.position[2] + visual.pose.position[2]
+                for model in self._world.models.values()
+                for link in model.links.values()
+                for visual in link.spec.visuals
+                if isinstance(visual.geometry, Plane) and visual.geometry.normal == UP
+            ),
+            None,
+        )
 
 
 class Illustrator:
@@ -116,7 +125,8 @@ def _softened(scene: Scene) -> Scene:
     suns = [light.diffuse for light in scene.lights if light.type == sun]
     lights = tuple(
         light._replace(diffuse=_dimmed(light.diffuse, _SUN)) if light.type == sun else light
-        for light in scene.lights)
+        for light in scene.lights
+    )
     ambient = scene.ambient
     for diffuse in suns:
         ambient = add(ambient, _dimmed(diffuse, _SKY))
@@ -136,7 +146,11 @@ def _grid() -> NDArray[Any]:
         for across in (False, True):
             low, high = number - _LINE / 2.0, number + _LINE / 2.0
             quad: list[tuple[float, float]] = [
-                (low, -_GRID_REACH), (high, -_GRID_REACH), (high, _GRID_REACH), (low, _GRID_REACH)]
+                (low, -_GRID_REACH),
+                (high, -_GRID_REACH),
+                (high, _GRID_REACH),
+                (low, _GRID_REACH),
+            ]
             if across:
                 quad = [(y, x) for x, y in reversed(quad)]
             corners += [(*quad[n], 0.0, *UP, 0.0, 0.0) for n in (0, 1, 2, 0, 2, 3)]

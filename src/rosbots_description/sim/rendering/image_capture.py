@@ -96,9 +96,7 @@ class ImageCapture:
         """Tell whether another picture may be requested."""
         return len(self._stamps) < MAX_PENDING
 
-    def request(
-        self, lenses: Sequence[tuple[Lens, Pose]], seed: int, wants: Wants
-    ) -> None:
+    def request(self, lenses: Sequence[tuple[Lens, Pose]], seed: int, wants: Wants) -> None:
         """Request a picture of the world in its current state.
 
         Args:

@@ -167,9 +167,12 @@ class RenderProcess:
             threads = max(0, min(4, len(os.sched_getaffinity(0)) - 2))
             self._process = subprocess.Popen(
                 [sys.executable, '-P', '-c', _PROGRAM, _FOLDER, str(theirs.fileno()), *sys.path],
-                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
                 pass_fds=[theirs.fileno()],
-                env={'LP_NUM_THREADS': str(threads), 'OPENBLAS_NUM_THREADS': '1', **os.environ})
+                env={'LP_NUM_THREADS': str(threads), 'OPENBLAS_NUM_THREADS': '1', **os.environ},
+            )
         self._connection = Connection(ours.detach())
         self._watch_anew()
 
@@ -179,8 +182,11 @@ class RenderProcess:
             self.close()
             self._fail(f'cameras cannot render images: {text}')
             return
-        logger.info('images are rendered by %s%s', text,
-                    ', in software: no GPU is available' if is_software else '')
+        logger.info(
+            'images are rendered by %s%s',
+            text,
+            ', in software: no GPU is available' if is_software else '',
+        )
         self._ready = True
         self._sent = set()
         self._send_scene()
@@ -197,9 +203,14 @@ class RenderProcess:
         for path in sorted(images - self._sent):
             self._send(('image', path))
         self._sent = used | images
-        self._send((
-            'scene', [(*part[:3], tuple(part.appearance), *part[4:]) for part in scene.parts],
-            [tuple(light) for light in scene.lights], *scene[2:]))
+        self._send(
+            (
+                'scene',
+                [(*part[:3], tuple(part.appearance), *part[4:]) for part in scene.parts],
+                [tuple(light) for light in scene.lights],
+                *scene[2:],
+            )
+        )
 
     def _send_camera(self, camera: 'RenderedCamera') -> None:
         self._send(('camera', camera.number, tuple(camera.lens), len(camera.memory)))
@@ -230,8 +241,10 @@ class RenderProcess:
             logger.error('the render process has died (%s); restarting it', ended)
             self._start()
         else:
-            self._fail(f'cameras stop: the render process has died {self._crashes} times '
-                       f'in a row ({ended})')
+            self._fail(
+                f'cameras stop: the render process has died {self._crashes} times '
+                f'in a row ({ended})'
+            )
 
     def _fail(self, fault: str) -> None:
         logger.error('%s', fault)
@@ -267,9 +280,7 @@ class RenderedCamera:
         """Return the number of pictures requested and not yet taken; at most MAX_PENDING."""
         return len(self._requested) + len(self._done)
 
-    def request(
-        self, eye: NDArray[Any], poses: NDArray[Any], seed: int, wants: Wants
-    ) -> None:
+    def request(self, eye: NDArray[Any], poses: NDArray[Any], seed: int, wants: Wants) -> None:
         """Request a picture of the current scene.
 
         Args:
@@ -280,8 +291,15 @@ class RenderedCamera:
         Raises:
             RenderError: drawing was given up.
         """
-        message = ('picture', self.number, self._next * self._size, tuple(wants), seed,
-                   eye.tobytes(), poses.tobytes())
+        message = (
+            'picture',
+            self.number,
+            self._next * self._size,
+            tuple(wants),
+            seed,
+            eye.tobytes(),
+            poses.tobytes(),
+        )
         if self._process.fault:
             raise NoRendererError(self._process.fault)
         self._next = (self._next + 1) % MAX_PENDING
@@ -332,15 +350,16 @@ class RenderedCamera:
         shape = lens.height, lens.width
         pixels = depths = jpeg = None
         if wanted.pixels:
-            content = self.memory[place:place + lens.colour_bytes]
+            content = self.memory[place : place + lens.colour_bytes]
             wide = lens.encoding.endswith('16')
             pixels = np.frombuffer(content, '<u2' if wide else 'u1').reshape(*shape, -1)
         place += lens.colour_bytes
         if wanted.depths:
-            depths = np.frombuffer(
-                self.memory[place:place + lens.depth_bytes], 'f4').reshape(shape)
+            depths = np.frombuffer(self.memory[place : place + lens.depth_bytes], 'f4').reshape(
+                shape
+            )
         place += lens.depth_bytes
         if wanted.jpeg:
-            size, = struct.unpack_from('<I', self.memory, place)
-            jpeg = self.memory[place + 4:place + 4 + size]
+            (size,) = struct.unpack_from('<I', self.memory, place)
+            jpeg = self.memory[place + 4 : place + 4 + size]
         return pixels, depths, jpeg

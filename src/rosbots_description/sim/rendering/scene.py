@@ -52,22 +52,33 @@ class SceneMirror:
         # Specifications are immutable, and a changed model is a new object.
         seen = (
             [(model, model.spec) for model in world.models.values()],
-            list(world.lights.values()), world.scene,
+            list(world.lights.values()),
+            world.scene,
         )
         if seen == self._seen:
             return False
         self._seen = seen
         self._links = [
-            link for model in world.models.values() for link in model.links.values()
-            if link.spec.visuals]
+            link
+            for model in world.models.values()
+            for link in model.links.values()
+            if link.spec.visuals
+        ]
         self.meshes = {}
         parts = tuple(
-            part for number, link in enumerate(self._links) for visual in link.spec.visuals
-            for part in visual_parts(visual, number, link.model.static, self.meshes))
+            part
+            for number, link in enumerate(self._links)
+            for visual in link.spec.visuals
+            for part in visual_parts(visual, number, link.model.static, self.meshes)
+        )
         scene = world.scene
         self.scene = Scene(
-            parts, tuple(_light(light) for light in world.lights.values()), scene.ambient[:3],
-            scene.background[:3], scene.shadows)
+            parts,
+            tuple(_light(light) for light in world.lights.values()),
+            scene.ambient[:3],
+            scene.background[:3],
+            scene.shadows,
+        )
         return True
 
     def poses(self) -> NDArray[Any]:
@@ -77,8 +88,9 @@ class SceneMirror:
         """
         if not self._links:
             return np.zeros((0, 7))
-        return np.array([(*pose.position, *pose.orientation)
-                         for pose in (link.pose for link in self._links)])
+        return np.array(
+            [(*pose.position, *pose.orientation) for pose in (link.pose for link in self._links)]
+        )
 
 
 def visual_parts(
@@ -94,8 +106,14 @@ def visual_parts(
     """
     for key, triangles, size, appearance in _surfaces(visual):
         meshes[key] = triangles
-        yield ScenePart(key, body, _matrix(visual, size).tobytes(), appearance,
-                        not isinstance(visual.geometry, Plane), still)
+        yield ScenePart(
+            key,
+            body,
+            _matrix(visual, size).tobytes(),
+            appearance,
+            not isinstance(visual.geometry, Plane),
+            still,
+        )
 
 
 def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Appearance]]:
@@ -115,8 +133,12 @@ def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Appearan
             key = f'{path} {os.stat(path).st_mtime_ns}'
             for number, part in enumerate(read_mesh(path).parts):
                 own = _appearance(part.reflection, part.rgba[3])._replace(texture=part.image)
-                yield (f'{key} {number}', partial(_mesh_corners, part), scale,
-                       appearance if visual.material else own)
+                yield (
+                    f'{key} {number}',
+                    partial(_mesh_corners, part),
+                    scale,
+                    appearance if visual.material else own,
+                )
 
 
 def _mesh_corners(part: MeshPart) -> NDArray[Any]:
@@ -124,21 +146,36 @@ def _mesh_corners(part: MeshPart) -> NDArray[Any]:
 
 
 def _appearance(own: Reflection, alpha: float) -> Appearance:
-    return Appearance(own.ambient, own.diffuse, own.specular, own.shininess, own.emissive, alpha,
-                own.lit, own.both_sides)
+    return Appearance(
+        own.ambient,
+        own.diffuse,
+        own.specular,
+        own.shininess,
+        own.emissive,
+        alpha,
+        own.lit,
+        own.both_sides,
+    )
 
 
 def _light(light: LightSpec) -> Light:
     direction = rotate(light.pose.orientation, light.direction)
     length = math.hypot(*direction) or 1.0
     return Light(
-        LIGHT_TYPES[light.type], light.pose.position,
+        LIGHT_TYPES[light.type],
+        light.pose.position,
         (direction[0] / length, direction[1] / length, direction[2] / length),
-        light.diffuse[:3], light.specular[:3], light.range,
+        light.diffuse[:3],
+        light.specular[:3],
+        light.range,
         (light.attenuation_constant, light.attenuation_linear, light.attenuation_quadratic),
-        (math.cos(light.spot_inner_angle / 2.0), math.cos(light.spot_outer_angle / 2.0),
-         light.spot_falloff),
-        light.cast_shadows)
+        (
+            math.cos(light.spot_inner_angle / 2.0),
+            math.cos(light.spot_outer_angle / 2.0),
+            light.spot_falloff,
+        ),
+        light.cast_shadows,
+    )
 
 
 def _matrix(visual: Visual, size: Vector) -> NDArray[Any]:

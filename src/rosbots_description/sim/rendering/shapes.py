@@ -25,21 +25,26 @@ def unit_box() -> NDArray[Any]:
         normal[axis] = sign
         right = np.roll(np.abs(normal), 1)
         up = np.cross(normal, right)
-        faces += [[*(0.5 * (normal + u * right + v * up)), *normal, (u + 1) / 2, (v + 1) / 2]
-                  for u, v in _SQUARE]
+        faces += [
+            [*(0.5 * (normal + u * right + v * up)), *normal, (u + 1) / 2, (v + 1) / 2]
+            for u, v in _SQUARE
+        ]
     return np.array(faces)
 
 
 @cache
 def unit_sphere() -> NDArray[Any]:
     """Return a sphere of radius 1; its poles are on the y axis, as Gazebo's are."""
-    ring, segment = (numbers.ravel() for numbers in np.meshgrid(
-        np.arange(SEGMENTS), np.arange(SEGMENTS), indexing='ij'))
+    ring, segment = (
+        numbers.ravel()
+        for numbers in np.meshgrid(np.arange(SEGMENTS), np.arange(SEGMENTS), indexing='ij')
+    )
     rings = np.stack([ring + 1, ring, ring, ring + 1, ring + 1, ring], axis=1)
     segments = np.stack([segment, segment + 1, segment, segment, segment + 1, segment + 1], axis=1)
     down, around = rings.ravel() * math.pi / SEGMENTS, segments.ravel() * 2 * math.pi / SEGMENTS
     points = np.stack(
-        [np.sin(down) * np.sin(around), np.cos(down), np.sin(down) * np.cos(around)], axis=1)
+        [np.sin(down) * np.sin(around), np.cos(down), np.sin(down) * np.cos(around)], axis=1
+    )
     uv = np.stack([segments.ravel() / SEGMENTS, rings.ravel() / SEGMENTS], axis=1)
     return np.concatenate([points, points, uv], axis=1)
 
@@ -51,14 +56,21 @@ def unit_cylinder() -> NDArray[Any]:
     for number in range(SEGMENTS):
         (x, y), (u, v) = (
             (math.cos(2.0 * math.pi * n / SEGMENTS), math.sin(2.0 * math.pi * n / SEGMENTS))
-            for n in (number, number + 1))
+            for n in (number, number + 1)
+        )
         a, b = number / SEGMENTS, (number + 1) / SEGMENTS
-        side = [(x, y, -0.5, x, y, 0.0, a, 0.0), (u, v, -0.5, u, v, 0.0, b, 0.0),
-                (u, v, 0.5, u, v, 0.0, b, 1.0), (x, y, 0.5, x, y, 0.0, a, 1.0)]
+        side = [
+            (x, y, -0.5, x, y, 0.0, a, 0.0),
+            (u, v, -0.5, u, v, 0.0, b, 0.0),
+            (u, v, 0.5, u, v, 0.0, b, 1.0),
+            (x, y, 0.5, x, y, 0.0, a, 1.0),
+        ]
         corners += [side[n] for n in (0, 1, 2, 0, 2, 3)]
         for z, ends in ((0.5, ((x, y), (u, v))), (-0.5, ((u, v), (x, y)))):
-            corners += [(*point, z, 0.0, 0.0, 2.0 * z, 0.5 + point[0] / 2, 0.5 + point[1] / 2)
-                        for point in ((0.0, 0.0), *ends)]
+            corners += [
+                (*point, z, 0.0, 0.0, 2.0 * z, 0.5 + point[0] / 2, 0.5 + point[1] / 2)
+                for point in ((0.0, 0.0), *ends)
+            ]
     return np.array(corners)
 
 
@@ -69,12 +81,15 @@ def unit_square(normal: Vector) -> NDArray[Any]:
     right = np.cross((0.0, 1.0, 0.0) if abs(upward[1]) < 0.9 else (0.0, 0.0, 1.0), upward)
     right /= np.linalg.norm(right)
     ahead = np.cross(upward, right)
-    return np.array([[*(0.5 * (u * right + v * ahead)), *upward, (u + 1) / 2, (v + 1) / 2]
-                     for u, v in _SQUARE])
+    return np.array(
+        [[*(0.5 * (u * right + v * ahead)), *upward, (u + 1) / 2, (v + 1) / 2] for u, v in _SQUARE]
+    )
 
 
 def mesh_corners(
-    vertices: NDArray[Any], faces: NDArray[Any], normals: NDArray[Any] | None,
+    vertices: NDArray[Any],
+    faces: NDArray[Any],
+    normals: NDArray[Any] | None,
     texcoords: NDArray[Any] | None = None,
 ) -> NDArray[Any]:
     """Return the triangles of a mesh, flat-shaded if it has no normals.

@@ -51,7 +51,8 @@ class SunlitMeshes:
                 return None
             name = f'{hashlib.sha256(repr(described).encode()).hexdigest()[:32]}.mesh'
             file = self._files.get(name) or self._files.write(
-                name, ogre_mesh(list(_parts(visual))), getattr(visual.geometry, 'path', name))
+                name, ogre_mesh(list(_parts(visual))), getattr(visual.geometry, 'path', name)
+            )
             self._recent.append(file)
             return file
         except ModelError as error:
@@ -62,11 +63,15 @@ class SunlitMeshes:
 def ogre_mesh(parts: list[tuple[Surface, Colour]]) -> bytes:
     """Return an Ogre mesh file of surfaces, each of one colour."""
     corners = np.concatenate([vertices for (vertices, _, _), _ in parts])
-    bounds = struct.pack('<7f', *corners.min(axis=0), *corners.max(axis=0),
-                         np.linalg.norm(corners, axis=1).max())
+    bounds = struct.pack(
+        '<7f', *corners.min(axis=0), *corners.max(axis=0), np.linalg.norm(corners, axis=1).max()
+    )
     submeshes = [_submesh(surface, rgba) for surface, rgba in parts]
-    return (struct.pack('<H', 0x1000) + b'[MeshSerializer_v1.100]\n'
-            + _chunk(0x3000, struct.pack('<?', False), *submeshes, _chunk(0x9000, bounds)))
+    return (
+        struct.pack('<H', 0x1000)
+        + b'[MeshSerializer_v1.100]\n'
+        + _chunk(0x3000, struct.pack('<?', False), *submeshes, _chunk(0x9000, bounds))
+    )
 
 
 # Vertex format of the file: name, numpy type, Ogre's type and semantic.
@@ -81,15 +86,25 @@ def _submesh(surface: Surface, rgba: Colour) -> bytes:
     data = np.empty(len(vertices), _VERTEX)
     data['position'], data['normal'] = vertices, normals
     data['rgba'] = np.round(255.0 * np.clip(rgba, 0.0, 1.0))
-    elements = [_chunk(0x5110, struct.pack('<5H', 0, kind, meaning, _OFFSETS[name], 0))
-                for name, _, kind, meaning in _ELEMENTS]
+    elements = [
+        _chunk(0x5110, struct.pack('<5H', 0, kind, meaning, _OFFSETS[name], 0))
+        for name, _, kind, meaning in _ELEMENTS
+    ]
     geometry = _chunk(
-        0x5000, struct.pack('<I', len(vertices)), _chunk(0x5100, *elements),
-        _chunk(0x5200, struct.pack('<2H', 0, _VERTEX.itemsize), _chunk(0x5210, data.tobytes())))
+        0x5000,
+        struct.pack('<I', len(vertices)),
+        _chunk(0x5100, *elements),
+        _chunk(0x5200, struct.pack('<2H', 0, _VERTEX.itemsize), _chunk(0x5210, data.tobytes())),
+    )
     return _chunk(
-        0x4000, OPAQUE if rgba[3] >= 1.0 else TRANSPARENT, b'\n',
-        struct.pack('<?I?', False, faces.size, True), faces.astype('<u4').tobytes(),
-        geometry, _chunk(0x4010, struct.pack('<H', _TRIANGLE_LIST)))
+        0x4000,
+        OPAQUE if rgba[3] >= 1.0 else TRANSPARENT,
+        b'\n',
+        struct.pack('<?I?', False, faces.size, True),
+        faces.astype('<u4').tobytes(),
+        geometry,
+        _chunk(0x4010, struct.pack('<H', _TRIANGLE_LIST)),
+    )
 
 
 def _chunk(number: int, *contents: bytes) -> bytes:
@@ -111,8 +126,11 @@ def _description(visual: Visual) -> object:
 def _parts(visual: Visual) -> Iterator[tuple[Surface, Colour]]:
     if isinstance(visual.geometry, Mesh):
         for part in read_mesh(visual.geometry.path).parts:
-            surface = (_flat(part.vertices[part.faces]) if part.normals is None
-                       else (part.vertices, part.faces, part.normals))
+            surface = (
+                _flat(part.vertices[part.faces])
+                if part.normals is None
+                else (part.vertices, part.faces, part.normals)
+            )
             yield surface, visual.material.rgba if visual.material else part.rgba
     else:
         yield UNIT_SURFACES[type(visual.geometry)](), (visual.material or Material()).rgba
@@ -122,8 +140,11 @@ def _flat(corners: FloatArray) -> Surface:
     """Return triangles (n, 3, 3) as a flat-shaded surface."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    return (corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3),
-            np.repeat(normals, 3, axis=0))
+    return (
+        corners.reshape(-1, 3),
+        np.arange(3 * len(corners)).reshape(-1, 3),
+        np.repeat(normals, 3, axis=0),
+    )
 
 
 @cache
@@ -136,9 +157,13 @@ def _box() -> Surface:
 
 @cache
 def _cylinder() -> Surface:
-    return _revolved([[(0.0, -0.5, 0.0, -1.0), (0.5, -0.5, 0.0, -1.0)],
-                      [(0.5, -0.5, 1.0, 0.0), (0.5, 0.5, 1.0, 0.0)],
-                      [(0.5, 0.5, 0.0, 1.0), (0.0, 0.5, 0.0, 1.0)]])
+    return _revolved(
+        [
+            [(0.0, -0.5, 0.0, -1.0), (0.5, -0.5, 0.0, -1.0)],
+            [(0.5, -0.5, 1.0, 0.0), (0.5, 0.5, 1.0, 0.0)],
+            [(0.5, 0.5, 0.0, 1.0), (0.0, 0.5, 0.0, 1.0)],
+        ]
+    )
 
 
 @cache

@@ -62,7 +62,7 @@ class Addresses:
             raise fault(
                 element,
                 f"'{uri}' is not to be found in: {places or 'no folder, as none is given'}; add "
-                "the folder that holds it to GAZEBO_RESOURCE_PATH where the simulator is started, "
+                'the folder that holds it to GAZEBO_RESOURCE_PATH where the simulator is started, '
                 'or use package://PACKAGE/file or file:///path',
                 AbsentError,
             )
@@ -78,7 +78,5 @@ class Addresses:
     def _beside(self, element: etree._Element, uri: str, directory: str, home: str) -> str:
         path = os.path.normpath(os.path.join(directory, uri.removeprefix('file://')))
         if home and not within(path, home):
-            raise fault(
-                element, f"'{uri}' leads out of '{home}'; '..' is not accepted there"
-            )
+            raise fault(element, f"'{uri}' leads out of '{home}'; '..' is not accepted there")
         return path

@@ -16,8 +16,9 @@ def require_world_path(path: str) -> None:
         SimError: it is not absolute, or does not end in .world or .sdf.
     """
     if not os.path.isabs(path):
-        raise SimError(f"'{path}' is not an absolute path; the simulator has a working folder of "
-                       'its own')
+        raise SimError(
+            f"'{path}' is not an absolute path; the simulator has a working folder of its own"
+        )
     if not path.endswith(WORLD_SUFFIXES):
         raise SimError(f"'{path}' is no name of a world file; it ends in .world or .sdf")
 

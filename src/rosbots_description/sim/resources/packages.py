@@ -30,8 +30,11 @@ class PackageSearch:
     def __call__(self, name: str) -> str | None:
         """Return the absolute path of the package's folder; None if there is no such package."""
         above = self._inside.parents if self._inside else ()
-        likely = (folder for directory in self.directories()
-                  for folder in (Path(directory), Path(directory, name)))
+        likely = (
+            folder
+            for directory in self.directories()
+            for folder in (Path(directory), Path(directory, name))
+        )
         for folder in (*above, *likely):
             if package_name(folder) == name:
                 return os.path.abspath(folder)

@@ -10,8 +10,11 @@ import stat
 from ..core import ModelError
 
 _OTHERS = {
-    stat.S_IFDIR: 'folder', stat.S_IFIFO: 'pipe', stat.S_IFSOCK: 'socket',
-    stat.S_IFCHR: 'device', stat.S_IFBLK: 'device',
+    stat.S_IFDIR: 'folder',
+    stat.S_IFIFO: 'pipe',
+    stat.S_IFSOCK: 'socket',
+    stat.S_IFCHR: 'device',
+    stat.S_IFBLK: 'device',
 }
 
 

@@ -59,7 +59,8 @@ class ScratchFolder:
         for place in (_temporary_folder(), MEMORY):
             try:
                 folder = tempfile.TemporaryDirectory(
-                    prefix=self._prefix, dir=place, ignore_cleanup_errors=True)
+                    prefix=self._prefix, dir=place, ignore_cleanup_errors=True
+                )
                 try:
                     path = _write(Path(folder.name), name, content)
                 except OSError:
@@ -74,7 +75,7 @@ class ScratchFolder:
                 return path
         raise ModelError(
             f"mesh file '{source}' cannot be made ready: nothing can be written in "
-            f"{' nor in '.join(faults)}; make room there, or set TMPDIR to a folder that has some"
+            f'{" nor in ".join(faults)}; make room there, or set TMPDIR to a folder that has some'
         )
 
 
@@ -133,8 +134,13 @@ def _removal_at_death(folder: str) -> subprocess.Popen[bytes]:
     It waits for the end of its input, which the system closes. Ctrl-C does not reach it.
     """
     return subprocess.Popen(
-        ['/bin/sh', '-c', 'read _; rm -rf -- "$0"', folder], stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, cwd='/')
+        ['/bin/sh', '-c', 'read _; rm -rf -- "$0"', folder],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        cwd='/',
+    )
 
 
 def _temporary_folder() -> str:

@@ -20,6 +20,7 @@ _NEWEST = (1, 7)
 _MANIFESTS = ('model.config', 'manifest.xml')
 _FILES = ('model.config', 'model.sdf')  # either makes a folder a model
 
+
 class _PathSearch:
     """Looks for relative paths along directories; the first match counts."""
 
@@ -70,8 +71,11 @@ def model_names(find_model: FindModel) -> list[str]:
     found: set[str] = set()
     for directory in (*getattr(find_model, 'directories', list)(), *_BUILT_IN.directories()):
         with contextlib.suppress(OSError), os.scandir(directory) as entries:
-            found |= {entry.name for entry in entries
-                      if any(os.path.isfile(os.path.join(entry.path, file)) for file in _FILES)}
+            found |= {
+                entry.name
+                for entry in entries
+                if any(os.path.isfile(os.path.join(entry.path, file)) for file in _FILES)
+            }
     return sorted(found - _NO_MODELS)
 
 
@@ -129,8 +133,10 @@ def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
 def not_on_model_path(find_model: FindModel, models: str, verb: str = 'is') -> str:
     """Return the end of a sentence about missing models: where was searched, and the cure."""
     places = searched(find_model) or 'which is empty'
-    return (f'{verb} not to be found along the model path ({places}); add the folder that holds '
-            f'{models} to GAZEBO_MODEL_PATH where the simulator is started')
+    return (
+        f'{verb} not to be found along the model path ({places}); add the folder that holds '
+        f'{models} to GAZEBO_MODEL_PATH where the simulator is started'
+    )
 
 
 def description_file(path: str, element: etree._Element) -> str:
@@ -207,4 +213,3 @@ def find_world(name: str, directories: Iterable[str | os.PathLike[str]] = ()) ->
 def _places(directory: Path, name: str) -> list[Path]:
     below = name.removeprefix('worlds/')
     return [directory / name, directory / 'worlds' / below, directory / below]
-

@@ -105,7 +105,8 @@ def file_path(element: etree._Element, uri: str) -> str:
         scheme = uri.split('://', 1)[0]
         if scheme == 'package':
             raise fault(
-                element, f"'{uri}': packages cannot be looked up here; use file:///path",
+                element,
+                f"'{uri}': packages cannot be looked up here; use file:///path",
                 AbsentError,
             )
         raise fault(

@@ -204,8 +204,14 @@ def _too_big(size: int, source: str) -> ModelError:
 
 def _parser(recover: bool = False) -> etree.XMLParser:
     return etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, dtd_validation=False,
-        huge_tree=False, remove_comments=True, remove_pis=True, recover=recover,
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        dtd_validation=False,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+        recover=recover,
         encoding='utf-8',
     )
 
@@ -243,7 +249,7 @@ def _syntax_sentence(document: bytes, source: str, error: expat.ExpatError) -> s
     tag = document.rfind(b'<', 0, error.offset)
     if document.count(b'=', max(tag, 0), error.offset) <= MAX_XML_ATTRIBUTES:
         try:
-            etree.fromstring(document[:error.offset + MAX_XML_ATTRIBUTES], _parser())
+            etree.fromstring(document[: error.offset + MAX_XML_ATTRIBUTES], _parser())
         except etree.XMLSyntaxError as better:
             return _malformed(source, better.lineno or 1, better.msg or '')
     return _malformed(source, error.lineno, expat.ErrorString(error.code))

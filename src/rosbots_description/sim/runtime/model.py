@@ -79,8 +79,10 @@ class Link:
             ValueError: the factor is negative or not finite.
         """
         if not 0.0 <= factor < math.inf:
-            raise ValueError(f"the friction of link '{self.scoped_name}' is multiplied by a finite "
-                             f'number of at least 0; it got {factor}')
+            raise ValueError(
+                f"the friction of link '{self.scoped_name}' is multiplied by a finite "
+                f'number of at least 0; it got {factor}'
+            )
         self.model.engine.scale_friction(self.model.body, self.name, factor)
 
     def can_slip(self, axis: Vector) -> bool:
@@ -259,8 +261,10 @@ class Model:
             ValueError: the factor is not a positive finite number.
         """
         if not 0.0 < factor < math.inf:
-            raise ValueError(f"the mass of model '{self.name}' is multiplied by a positive finite "
-                             f'number; it got {factor}')
+            raise ValueError(
+                f"the mass of model '{self.name}' is multiplied by a positive finite "
+                f'number; it got {factor}'
+            )
         self.engine.scale_mass(self.body, factor)
 
     def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
@@ -337,7 +341,8 @@ class Model:
         link = self.links.get(name.removeprefix(f'{self.name}::'))
         if link is None:
             raise NotFoundError(
-                f"model '{self.name}' has no link '{name}'; its links: {', '.join(self.links)}")
+                f"model '{self.name}' has no link '{name}'; its links: {', '.join(self.links)}"
+            )
         return link
 
     def locate(self, name: str) -> tuple[Link, Pose]:
@@ -346,8 +351,7 @@ class Model:
         Raises:
             NotFoundError: the description has no such link, or it has no mass.
         """
-        parent, pose = self.spec.reduced.get(
-            name.removeprefix(f'{self.name}::'), (name, IDENTITY))
+        parent, pose = self.spec.reduced.get(name.removeprefix(f'{self.name}::'), (name, IDENTITY))
         return self.link(parent), pose
 
     def plugin(self, name: str) -> Any:  # noqa: ANN401  each class has commands of its own
@@ -367,7 +371,8 @@ class Model:
                 return plugin
         known = ', '.join(f"'{key}' ({one.spec.filename})" for key, one in self.plugins.items())
         raise NotFoundError(
-            f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}")
+            f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}"
+        )
 
     def controller(self, name: str) -> Any:  # noqa: ANN401  each class has commands of its own
         """Return the controller of that name, as the plugin gazebo_ros_control has loaded it.
@@ -375,11 +380,14 @@ class Model:
         Raises:
             NotFoundError: no such controller is loaded.
         """
-        loaded = {own: one for plugin in self.plugins.values()
-                  for own, one in plugin.controllers.items()}
+        loaded = {
+            own: one for plugin in self.plugins.values() for own, one in plugin.controllers.items()
+        }
         if name not in loaded:
-            raise NotFoundError(f"model '{self.name}' has no controller '{name}'; its controllers: "
-                                f"{', '.join(loaded) or 'none'}")
+            raise NotFoundError(
+                f"model '{self.name}' has no controller '{name}'; its controllers: "
+                f'{", ".join(loaded) or "none"}'
+            )
         return loaded[name]
 
     @property
@@ -395,13 +403,16 @@ class Model:
         """
         if name in self.sensors:
             return self.sensors[name]
-        inner = {one.scoped_name.removeprefix(f'{self.name}::'): one
-                 for one in reversed(self.sensors.values())}
+        inner = {
+            one.scoped_name.removeprefix(f'{self.name}::'): one
+            for one in reversed(self.sensors.values())
+        }
         if name in inner:
             return inner[name]
         known = ', '.join(reversed(inner))
         raise NotFoundError(
-            f"model '{self.name}' has no sensor '{name}'; its sensors: {known or 'none'}")
+            f"model '{self.name}' has no sensor '{name}'; its sensors: {known or 'none'}"
+        )
 
     def joint(self, name: str) -> Joint:
         """Return the joint of that plain or scoped name.

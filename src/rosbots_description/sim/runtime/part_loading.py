@@ -82,8 +82,13 @@ class PartLoader:
         """
         if plugin is None:
             known = library_name(spec.filename) in missing_libraries()
-            logger.log(logging.WARNING if known else logging.ERROR, '%s: %s; see %s',
-                       where, library_remark(spec.filename), PAGE)
+            logger.log(
+                logging.WARNING if known else logging.ERROR,
+                '%s: %s; see %s',
+                where,
+                library_remark(spec.filename),
+                PAGE,
+            )
             self._model.left_out.append(called)
         elif self._start(plugin, where, called):
             plugins = self._model.plugins

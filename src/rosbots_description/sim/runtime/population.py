@@ -12,8 +12,12 @@ from .world_file_state import apply_state, state_of
 logger = logging.getLogger(__name__)
 
 # World plugins whose function the server provides anyway.
-_SERVED = ('libgazebo_ros_api_plugin.so', 'libgazebo_ros_paths_plugin.so',
-           'libgazebo_ros_init.so', 'libgazebo_ros_factory.so')
+_SERVED = (
+    'libgazebo_ros_api_plugin.so',
+    'libgazebo_ros_paths_plugin.so',
+    'libgazebo_ros_init.so',
+    'libgazebo_ros_factory.so',
+)
 
 
 def populate(world: World, spec: WorldSpec) -> None:
@@ -31,21 +35,22 @@ def populate(world: World, spec: WorldSpec) -> None:
         try:
             world.spawn(model_spec, model_spec.name, pose)
         except SimError as error:
-            logger.error(
-                "model '%s': %s; this model is left out", model_spec.name, error
-            )
+            logger.error("model '%s': %s; this model is left out", model_spec.name, error)
     for state in spec.states:
         model = world.models.get(state.name)
         if model is None:
-            logger.warning("the world's <state> names a model '%s' that does not exist",
-                           shortened(state.name))
+            logger.warning(
+                "the world's <state> names a model '%s' that does not exist", shortened(state.name)
+            )
         else:
             apply_state(model, state)
     for plugin in spec.plugins:
         if plugin.filename not in _SERVED:
             logger.warning(
-                "world plugin '%s' (%s, line %d) is not run here", shortened(plugin.name),
-                shortened(plugin.filename), plugin.element.line,
+                "world plugin '%s' (%s, line %d) is not run here",
+                shortened(plugin.name),
+                shortened(plugin.filename),
+                plugin.element.line,
             )
 
 
@@ -61,8 +66,9 @@ def describe(world: World) -> WorldSpec:
     return replace(
         world.spec,  # its plugins, and the parts that nothing acts on
         name=world.name,
-        models=tuple((replace(model.spec, name=model.name), model.initial_pose)
-                     for model in models),
+        models=tuple(
+            (replace(model.spec, name=model.name), model.initial_pose) for model in models
+        ),
         physics=world.physics,
         lights=tuple(world.lights.values()),
         scene=world.scene,

@@ -44,10 +44,21 @@ def set_friction(world: World, name: str, mu: float, mu2: float) -> None:
         return replace(collision, surface=replace(collision.surface, mu=mu, mu2=mu2))
 
     model, names = found[0].link.model, {(frame.link.name, frame.name) for frame in found}
-    model.respecify(replace(model.spec, links=tuple(
-        replace(link, collisions=tuple(
-            changed(one) if (link.name, one.name) in names else one for one in link.collisions))
-        for link in model.spec.links)))
+    model.respecify(
+        replace(
+            model.spec,
+            links=tuple(
+                replace(
+                    link,
+                    collisions=tuple(
+                        changed(one) if (link.name, one.name) in names else one
+                        for one in link.collisions
+                    ),
+                )
+                for link in model.spec.links
+            ),
+        )
+    )
 
 
 def set_inertial(link: Link, inertial: Inertial, gravity: bool) -> None:
@@ -63,8 +74,12 @@ def set_inertial(link: Link, inertial: Inertial, gravity: bool) -> None:
     if not model.static:
         inertial = _movable(link, inertial)
     changed = replace(link.spec, inertial=inertial, gravity=gravity)
-    model.respecify(replace(model.spec, links=tuple(
-        changed if spec is link.spec else spec for spec in model.spec.links)))
+    model.respecify(
+        replace(
+            model.spec,
+            links=tuple(changed if spec is link.spec else spec for spec in model.spec.links),
+        )
+    )
 
 
 def _movable(link: Link, inertial: Inertial) -> Inertial:

@@ -45,7 +45,8 @@ class SavedState:
         if [*map(id, models)] != [*map(id, self._models)]:
             raise SimError(
                 f'the state was saved with the models {_listed(self._models)}, and now there are '
-                f'{_listed(models)}; save another one after models have come or gone')
+                f'{_listed(models)}; save another one after models have come or gone'
+            )
         world.engine.restore(self._snapshot)
         vars(world.clock).update(self._clock)
         world.physics, world.paused, world.seed = self._physics, self._paused, self._seed

@@ -42,13 +42,25 @@ class ShownWorld:
         reset = self._settings is None
         removed = tuple(name for name, seen in self._models.items() if found.get(name) != seen)
         gone = {self._models[name][0] for name in removed}
-        self._links = {number: shown for number, shown in self._links.items()
-                       if shown[0].model not in gone}
-        added = tuple(self._shown(name, model) for name, (model, _) in found.items()
-                      if self._models.get(name) != found[name])
+        self._links = {
+            number: shown for number, shown in self._links.items() if shown[0].model not in gone
+        }
+        added = tuple(
+            self._shown(name, model)
+            for name, (model, _) in found.items()
+            if self._models.get(name) != found[name]
+        )
         self._models, self._settings = found, settings
-        return SceneChange(reset, added, removed, dict(world.lights), world.scene,
-                           world.physics.step_size, world.physics.max_update_rate, world.name)
+        return SceneChange(
+            reset,
+            added,
+            removed,
+            dict(world.lights),
+            world.scene,
+            world.physics.step_size,
+            world.physics.max_update_rate,
+            world.name,
+        )
 
     def motion(self, real_time: float) -> ShownMotion:
         """Return the clock, and the links that moved since they were last shown."""
@@ -66,8 +78,16 @@ class ShownWorld:
         for link in model.links.values():
             spec = link.spec
             sensors = (ShownSensor(one.name, one.type, one.pose) for one in spec.sensors)
-            shown = ShownLink(next(self._numbers), link.name, link.pose, spec.visuals,
-                              spec.collisions, spec.inertial, spec.gravity, tuple(sensors))
+            shown = ShownLink(
+                next(self._numbers),
+                link.name,
+                link.pose,
+                spec.visuals,
+                spec.collisions,
+                spec.inertial,
+                spec.gravity,
+                tuple(sensors),
+            )
             self._links[shown.number] = link, shown.pose
             links.append(shown)
         joints = tuple(joint.spec for joint in model.joints.values())

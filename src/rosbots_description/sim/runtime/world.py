@@ -110,8 +110,11 @@ class World:
             clock.steps += schedule.run(clock.steps, end, engine.step) - 1
         if begin + steps > last:
             self.paused = True
-            logger.error('the simulation is paused at %d s: stamps of 32 bits end there. '
-                         'reset_simulation begins again at 0 s', END)
+            logger.error(
+                'the simulation is paused at %d s: stamps of 32 bits end there. '
+                'reset_simulation begins again at 0 s',
+                END,
+            )
         return end - begin
 
     def set_physics(self, physics: PhysicsSettings) -> None:
@@ -176,8 +179,11 @@ class World:
 
     def overlaps(self, model: Model) -> dict[str, float]:
         """Return the models that overlap a model: name -> penetration depth [m]."""
-        depths = {name: self.engine.overlap(model.body, other.body)
-                  for name, other in self.models.items() if other is not model}
+        depths = {
+            name: self.engine.overlap(model.body, other.body)
+            for name, other in self.models.items()
+            if other is not model
+        }
         return {name: depth for name, depth in depths.items() if depth > 0.0}
 
     def touching(self, model: Model) -> list[str]:

@@ -28,8 +28,10 @@ class DueTimes:
             PluginError: the rate is too low; the message names `what`, e.g. '<updateRate>'.
         """
         if 0.0 < rate < MIN_UPDATE_RATE:
-            raise PluginError(f'{what} is {rate:g} Hz; it must be at least {MIN_UPDATE_RATE:g}, '
-                              'or 0 for every step')
+            raise PluginError(
+                f'{what} is {rate:g} Hz; it must be at least {MIN_UPDATE_RATE:g}, '
+                'or 0 for every step'
+            )
         self._period_ns = NANOSECONDS / rate if rate > 0.0 else 0.0
 
     def begin(self, now_ns: int) -> None:
@@ -166,8 +168,10 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
             PluginError: the sensor is of an unsupported type.
         """
         if not isinstance(self.sensor, self.sensor_class):
-            raise PluginError(f"{self.spec.filename} does not work in a <sensor> of type "
-                              f"'{self.sensor.spec.type}'")
+            raise PluginError(
+                f'{self.spec.filename} does not work in a <sensor> of type '
+                f"'{self.sensor.spec.type}'"
+            )
         super().start()
 
     def restart(self) -> None:

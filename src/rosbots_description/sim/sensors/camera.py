@@ -30,10 +30,20 @@ WINDOW = 5_000_000_000  # [ns] of simulated time over which the rate of pictures
 FEWEST = 10  # pictures due in that time, else it is extended
 TOLERATED = 0.05  # share of the pictures due that may be left out without a warning
 _ENCODINGS = {
-    'L8': 'mono8', 'L_INT8': 'mono8', 'L16': 'mono16', 'L_INT16': 'mono16',
-    'R8G8B8': 'rgb8', 'RGB_INT8': 'rgb8', 'B8G8R8': 'bgr8', 'BGR_INT8': 'bgr8',
-    'R16G16B16': 'rgb16', 'RGB_INT16': 'rgb16', 'BAYER_RGGB8': 'bayer_rggb8',
-    'BAYER_BGGR8': 'bayer_bggr8', 'BAYER_GBRG8': 'bayer_gbrg8', 'BAYER_GRBG8': 'bayer_grbg8',
+    'L8': 'mono8',
+    'L_INT8': 'mono8',
+    'L16': 'mono16',
+    'L_INT16': 'mono16',
+    'R8G8B8': 'rgb8',
+    'RGB_INT8': 'rgb8',
+    'B8G8R8': 'bgr8',
+    'BGR_INT8': 'bgr8',
+    'R16G16B16': 'rgb16',
+    'RGB_INT16': 'rgb16',
+    'BAYER_RGGB8': 'bayer_rggb8',
+    'BAYER_BGGR8': 'bayer_bggr8',
+    'BAYER_GBRG8': 'bayer_gbrg8',
+    'BAYER_GRBG8': 'bayer_grbg8',
 }
 _DISTORTION = ('k1', 'k2', 'k3', 'p1', 'p2')
 
@@ -125,7 +135,8 @@ class CameraSensor(Sensor):
         """Set whether empty borders of distorted pictures are cropped."""
         self.cameras = tuple(
             one._replace(lens=one.lens._replace(crop=crops and one.lens.crop))
-            for one in self.cameras)
+            for one in self.cameras
+        )
 
     def set_rate(self, rate: float) -> None:
         """Take pictures at this rate [Hz] from now on."""
@@ -197,7 +208,11 @@ class CameraSensor(Sensor):
             logger.warning(
                 "model '%s', %s: pictures come at %.3g of %.3g Hz, as drawing them takes longer; "
                 'fewer pixels, a lower <update_rate> or a graphics card would help '
-                '(doc/rendering.md)', self.model.name, self.called, *reached)
+                '(doc/rendering.md)',
+                self.model.name,
+                self.called,
+                *reached,
+            )
 
     def _wants(self) -> Wants:
         wanted = list(self._wanted.values())
@@ -211,7 +226,8 @@ class CameraSensor(Sensor):
         here = self.pose
         seed = int(self.random.at(self.world.clock.steps).integers(1 << 63))
         self._capture.request(
-            [(self._noisy(one.lens), compose(here, one.pose)) for one in self.cameras], seed, wants)
+            [(self._noisy(one.lens), compose(here, one.pose)) for one in self.cameras], seed, wants
+        )
 
     def _noisy(self, lens: Lens) -> Lens:
         return lens._replace(noise_stddev=self.noise_scale * lens.noise_stddev)
@@ -228,29 +244,49 @@ class CameraSensor(Sensor):
         field = number(element, 'horizontal_fov', 1.047)
         near, far = number(element, 'clip/near', 0.1), number(element, 'clip/far', 100.0)
         if not 0.001 <= field <= math.pi - 0.001:
-            raise PluginError(f'line {element.line}: <horizontal_fov> is {field:g} rad; a pinhole '
-                              'sees more than 0 and less than pi')
+            raise PluginError(
+                f'line {element.line}: <horizontal_fov> is {field:g} rad; a pinhole '
+                'sees more than 0 and less than pi'
+            )
         if not 0.0 < near < far:
-            raise PluginError(f'line {element.line}: <near> is {near:g} m and <far> is {far:g} m; '
-                              'near must be above 0 and below far')
+            raise PluginError(
+                f'line {element.line}: <near> is {near:g} m and <far> is {far:g} m; '
+                'near must be above 0 and below far'
+            )
         child = child_at(element, 'image/format')
         written = child.text.strip() if child is not None else 'R8G8B8'
         encoding = _ENCODINGS.get(written)
         if encoding is None:
             logger.error(
                 "model '%s', %s: <format> '%s' is unknown; pictures are in bgr8, as in Gazebo; "
-                'B8G8R8 and R8G8B8 are known', self.model.name, self.called, written)
+                'B8G8R8 and R8G8B8 are known',
+                self.model.name,
+                self.called,
+                written,
+            )
             encoding = 'bgr8'
-        k1, k2, k3, p1, p2 = (
-            number(element, f'distortion/{name}', 0.0) for name in _DISTORTION)
+        k1, k2, k3, p1, p2 = (number(element, f'distortion/{name}', 0.0) for name in _DISTORTION)
         noise = read_noise(element.child('noise'))
         lens = Lens(
-            width, height, field, near, far, encoding,
-            (k1, k2, k3, p1, p2), _pair(child_at(element, 'distortion/center'), (0.5, 0.5)),
-            k1 < 0.0, noise.mean, noise.deviation)
+            width,
+            height,
+            field,
+            near,
+            far,
+            encoding,
+            (k1, k2, k3, p1, p2),
+            _pair(child_at(element, 'distortion/center'), (0.5, 0.5)),
+            k1 < 0.0,
+            noise.mean,
+            noise.deviation,
+        )
         pose = element.child('pose')
-        return SensedCamera(element.attributes.get('name', ''),
-                            Pose() if pose is None else _pose(pose), lens, encoding)
+        return SensedCamera(
+            element.attributes.get('name', ''),
+            Pose() if pose is None else _pose(pose),
+            lens,
+            encoding,
+        )
 
 
 @register_sensor('multicamera')
@@ -275,8 +311,10 @@ class DepthSensor(CameraSensor):
 def _numbers(element: Element, size: int) -> tuple[float, ...]:
     values = parse_numbers(element.text, size)
     if values is None:
-        raise PluginError(f"line {element.line}: <{element.tag}> is '{element.text}'; it takes "
-                          f'{size} finite numbers')
+        raise PluginError(
+            f"line {element.line}: <{element.tag}> is '{element.text}'; it takes "
+            f'{size} finite numbers'
+        )
     return values
 
 

@@ -22,8 +22,9 @@ Value = TypeVar('Value', str, float, bool)
 class Channel:
     """Outputs and calibration of one camera of a plugin: `image`, `compressed`, `camera_info`."""
 
-    def __init__(self, plugin: 'CameraPlugin', camera: SensedCamera, side: str, baseline: float
-                 ) -> None:
+    def __init__(
+        self, plugin: 'CameraPlugin', camera: SensedCamera, side: str, baseline: float
+    ) -> None:
         """Make the outputs; `side` prefixes their names, `baseline` is in metres."""
         self.camera = camera
         self.frame = plugin.frame
@@ -38,11 +39,20 @@ class Channel:
         """Send a picture."""
         if self.image.wanted and picture.pixels is not None:
             lens = self.camera.lens
-            self.image.send(Image(picture.stamp_ns, self.frame, lens.width, lens.height,
-                                  self.camera.encoding, picture.pixels.tobytes()))
+            self.image.send(
+                Image(
+                    picture.stamp_ns,
+                    self.frame,
+                    lens.width,
+                    lens.height,
+                    self.camera.encoding,
+                    picture.pixels.tobytes(),
+                )
+            )
         if self.compressed.wanted and picture.jpeg is not None:
-            self.compressed.send(CompressedImage(
-                picture.stamp_ns, self.frame, self._format, picture.jpeg))
+            self.compressed.send(
+                CompressedImage(picture.stamp_ns, self.frame, self._format, picture.jpeg)
+            )
         if self.camera_info.wanted:
             self.camera_info.send(StampedInfo(picture.stamp_ns, self.info))
 
@@ -61,14 +71,27 @@ class CameraPlugin(SensorPlugin[Pictures]):
         self.rate = self._value('updateRate', 0.0)
         self.camera_name = self._value('cameraName', '')
         if not self.camera_name:
-            logger.warning('%s<cameraName> is missing or empty: there is no dynamic_reconfigure',
-                           self.log_prefix)
+            logger.warning(
+                '%s<cameraName> is missing or empty: there is no dynamic_reconfigure',
+                self.log_prefix,
+            )
         self.frame = self._value('frameName', '')
         self._topic('imageTopicName', 'image_raw')
         self._topic('cameraInfoTopicName', 'camera_info')
-        self._values = {tag: self._value(tag, 0.0) for tag in (
-            'Cx', 'Cy', 'focalLength', 'hackBaseline', 'distortionK1', 'distortionK2',
-            'distortionK3', 'distortionT1', 'distortionT2')}
+        self._values = {
+            tag: self._value(tag, 0.0)
+            for tag in (
+                'Cx',
+                'Cy',
+                'focalLength',
+                'hackBaseline',
+                'distortionK1',
+                'distortionK2',
+                'distortionK3',
+                'distortionT1',
+                'distortionT2',
+            )
+        }
         self._takes_distortion = self._value('autoDistortion', False)
         self.params.ignore('CxPrime')
         self.load_trigger()
@@ -82,7 +105,8 @@ class CameraPlugin(SensorPlugin[Pictures]):
     def load_channels(self) -> None:
         """Make the outputs."""
         self.channels: tuple[Channel, ...] = (
-            Channel(self, self.sensor.cameras[0], '', self._values['hackBaseline']),)
+            Channel(self, self.sensor.cameras[0], '', self._values['hackBaseline']),
+        )
 
     def restart(self) -> None:
         """Restart the schedule of pictures at the current time."""
@@ -98,17 +122,27 @@ class CameraPlugin(SensorPlugin[Pictures]):
             logger.warning(
                 '%s<focalLength> is %g and does not fit <horizontal_fov> and width, which make '
                 '%.6g: messages say the former, pictures are taken with the latter',
-                self.log_prefix, focal, seen)
+                self.log_prefix,
+                focal,
+                seen,
+            )
         x = values['Cx'] or (lens.width + 1.0) / 2.0
         y = values['Cy'] or (lens.height + 1.0) / 2.0
-        k1, k2, k3, t1, t2 = lens.distortion if self._takes_distortion else (
-            values[f'distortion{name}'] for name in ('K1', 'K2', 'K3', 'T1', 'T2'))
+        k1, k2, k3, t1, t2 = (
+            lens.distortion
+            if self._takes_distortion
+            else (values[f'distortion{name}'] for name in ('K1', 'K2', 'K3', 'T1', 'T2'))
+        )
         return CameraInfo(
-            lens.width, lens.height, 'plumb_bob', (k1, k2, t1, t2, k3),
+            lens.width,
+            lens.height,
+            'plumb_bob',
+            (k1, k2, t1, t2, k3),
             (focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0),
             (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
             (focal, 0.0, x, -focal * baseline, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0),
-            frame=self.frame)
+            frame=self.frame,
+        )
 
     def set_info(self, info: CameraInfo, channel: int = 0) -> None:
         """Set the calibration sent with pictures, as by set_camera_info."""
@@ -125,8 +159,11 @@ class CameraPlugin(SensorPlugin[Pictures]):
 
     def wants(self) -> Wants:
         """Return what is read."""
-        return Wants(any(channel.image.wanted for channel in self.channels), False,
-                     any(channel.compressed.wanted for channel in self.channels))
+        return Wants(
+            any(channel.image.wanted for channel in self.channels),
+            False,
+            any(channel.compressed.wanted for channel in self.channels),
+        )
 
     def stamp_of(self, reading: Pictures) -> int:
         """Return the stamp of a picture [ns]."""
@@ -170,17 +207,26 @@ class MultiCameraPlugin(CameraPlugin):
         for number, camera in enumerate(self.sensor.cameras):
             side = next((side for side in ('left', 'right') if side in camera.name), '')
             if not side or side in found:
-                logger.warning("%scamera '%s' has no topics: upstream looks for one 'left' and one "
-                               "'right' in the names", self.log_prefix, camera.name)
+                logger.warning(
+                    "%scamera '%s' has no topics: upstream looks for one 'left' and one "
+                    "'right' in the names",
+                    self.log_prefix,
+                    camera.name,
+                )
             else:
                 found[side] = number
         self._numbers = tuple(found.values())
         self.sides = tuple(found)
         # Only the right camera is offset by the baseline.
         self.channels = tuple(
-            Channel(self, self.sensor.cameras[number], f'{side}_',
-                    self._values['hackBaseline'] if side == 'right' else 0.0)
-            for side, number in found.items())
+            Channel(
+                self,
+                self.sensor.cameras[number],
+                f'{side}_',
+                self._values['hackBaseline'] if side == 'right' else 0.0,
+            )
+            for side, number in found.items()
+        )
 
     def _topic(self, tag: str, default: str) -> None:
         super()._topic(tag, default)

@@ -59,10 +59,17 @@ class ContactSensor(Sensor):
         self._names = {name.rpartition('::')[2] for name in names} & set(known)
         missing = [name for name in names if name.rpartition('::')[2] not in known]
         if missing or not names:
-            said = f"names {', '.join(missing)} as <collision>" if missing \
-                else 'names no <collision>'
-            logger.warning("model '%s', %s: it %s; the collisions of '%s' are: %s", self.model.name,
-                           self.called, said, self.link.name, ', '.join(known) or 'none')
+            said = (
+                f'names {", ".join(missing)} as <collision>' if missing else 'names no <collision>'
+            )
+            logger.warning(
+                "model '%s', %s: it %s; the collisions of '%s' are: %s",
+                self.model.name,
+                self.called,
+                said,
+                self.link.name,
+                ', '.join(known) or 'none',
+            )
         self._contacts: list[ContactPair] = []
         self._next_ns = 0
 
@@ -93,8 +100,11 @@ class ContactSensor(Sensor):
         """Return the contacts of the last step."""
         pairs: dict[tuple[CollisionFrame, CollisionFrame], list[ContactPoint]] = {}
         engine = self.world.engine
-        contacts = [contact for contact in engine.contacts(self.model.body, self.link.name)
-                    if contact.one.collision in self._names]
+        contacts = [
+            contact
+            for contact in engine.contacts(self.model.body, self.link.name)
+            if contact.one.collision in self._names
+        ]
         if not contacts:
             return ()
         models = {model.body: model for model in self.world.models.values()}
@@ -103,26 +113,34 @@ class ContactSensor(Sensor):
         @cache
         def rank(model: Model) -> tuple[float, bool, int]:
             place = places[model]
-            return _level(engine.extent(model.body)), not model.static, \
-                place if model.static else -place
+            return (
+                _level(engine.extent(model.body)),
+                not model.static,
+                place if model.static else -place,
+            )
 
         for contact in contacts:
-            first, second = (models[body].links[link].collisions[collision]
-                             for body, link, collision in (contact.one, contact.other))
+            first, second = (
+                models[body].links[link].collisions[collision]
+                for body, link, collision in (contact.one, contact.other)
+            )
             normal, force = contact.normal, contact.force
             if rank(second.link.model) < rank(first.link.model):
                 first, second = second, first
                 normal, force = (subtract((0.0, 0.0, 0.0), v) for v in (normal, force))
             pairs.setdefault((first, second), []).append(
-                _point(first, contact.position, normal, force, contact.depth))
+                _point(first, contact.position, normal, force, contact.depth)
+            )
         now_ns = self.world.clock.now_ns
-        return tuple(ContactPair(first.scoped_name, second.scoped_name, now_ns, tuple(points))
-                     for (first, second), points in pairs.items())
+        return tuple(
+            ContactPair(first.scoped_name, second.scoped_name, now_ns, tuple(points))
+            for (first, second), points in pairs.items()
+        )
 
 
 def _level(extent: float) -> float:
     """Return the level of a model of that size [m] in Gazebo's hash space."""
-    if extent >= 2.0 ** _LARGEST:
+    if extent >= 2.0**_LARGEST:
         return math.inf
     return max(_SMALLEST, math.frexp(extent)[1])
 

@@ -45,7 +45,8 @@ class DepthCameraPlugin(CameraPlugin):
         lens = self.channels[0].camera.lens
         across, down = (
             (np.arange(size) - 0.5 * (size - 1)) / lens.focal_length
-            for size in (lens.width, lens.height))
+            for size in (lens.width, lens.height)
+        )
         self._rays = across.astype('f4')[None, :], down.astype('f4')[:, None]
 
     def farthest(self) -> float:
@@ -55,8 +56,9 @@ class DepthCameraPlugin(CameraPlugin):
     def wants(self) -> Wants:
         """Return what is read."""
         own = super().wants()
-        return own._replace(pixels=own.pixels or self.points.wanted,
-                            depths=self.depth.wanted or self.points.wanted)
+        return own._replace(
+            pixels=own.pixels or self.points.wanted, depths=self.depth.wanted or self.points.wanted
+        )
 
     def process(self, reading: Pictures) -> None:
         """Send a picture, its depth image and its point cloud."""

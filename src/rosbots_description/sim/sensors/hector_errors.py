@@ -36,6 +36,7 @@ class ErrorModel:
         Raises:
             PluginError: a text is not one number or one for each axis, or a size is negative.
         """
+
         def read(word: str, default: float = 0.0, least: float = 0.0) -> Floats:
             tag = f'{prefix}{word}' if prefix else f'{word[0].lower()}{word[1:]}'
             return _numbers(plugin, tag, default, least, axes)

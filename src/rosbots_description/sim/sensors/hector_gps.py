@@ -49,8 +49,10 @@ class HectorGps(PeriodicPlugin):
         self._origin = (latitude, read('referenceLongitude', 8.9), read('referenceAltitude', 0.0))
         heading = math.radians(read('referenceHeading', 0.0))
         self._cos, self._sin = math.cos(heading), math.sin(heading)
-        self._status = (int(self._within('status', 0.0, -1.0, 2.0)),
-                        int(self._within('service', 0.0, 0.0, 65535.0)))
+        self._status = (
+            int(self._within('status', 0.0, -1.0, 2.0)),
+            int(self._within('service', 0.0, 0.0, 65535.0)),
+        )
         curved = 1.0 - _SQUARED_ECCENTRICITY * math.sin(math.radians(latitude)) ** 2
         vertical = _EQUATORIAL_RADIUS / math.sqrt(curved)
         self._north = vertical * (1.0 - _SQUARED_ECCENTRICITY) / curved  # radii [m]
@@ -68,8 +70,9 @@ class HectorGps(PeriodicPlugin):
         """
         value = self.params.read(tag, default)
         if not least <= value <= most:
-            raise PluginError(f'{self.log_prefix}<{tag}> is {value:g}; it must lie between '
-                              f'{least:g} and {most:g}')
+            raise PluginError(
+                f'{self.log_prefix}<{tag}> is {value:g}; it must lie between {least:g} and {most:g}'
+            )
         return value
 
     def report(self) -> None:
@@ -80,10 +83,16 @@ class HectorGps(PeriodicPlugin):
         x, y, z = self._speed.measured(twist.linear, self._speed.bias(seconds), random)
         self.velocity.send((self._cos * x + self._sin * y, self._cos * y - self._sin * x, z))
         bias = self._position.bias(seconds) + self._speed.integrated_drift(
-            seconds, self._position.frequency)
+            seconds, self._position.frequency
+        )
         x, y, z = self._position.measured(pose.position, bias, random)
         latitude, longitude, altitude = self._origin
-        self.fix.send(Fix(
-            latitude + math.degrees((self._cos * x + self._sin * y) / self._north),
-            longitude - math.degrees((self._cos * y - self._sin * x) / self._east),
-            altitude + z, as_vector(self._position.variances.tolist()), *self._status))
+        self.fix.send(
+            Fix(
+                latitude + math.degrees((self._cos * x + self._sin * y) / self._north),
+                longitude - math.degrees((self._cos * y - self._sin * x) / self._east),
+                altitude + z,
+                as_vector(self._position.variances.tolist()),
+                *self._status,
+            )
+        )

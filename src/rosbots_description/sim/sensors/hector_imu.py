@@ -34,8 +34,7 @@ class HectorImu(LinkImu):
     """Publishes what an IMU on <bodyName> measures, and its bias. Outputs: `imu`, `bias`."""
 
     missing_level = logging.DEBUG
-    hints: Mapping[str, str] = {
-        'headingDrift': ' (the tags of the heading begin with yaw)'}
+    hints: Mapping[str, str] = {'headingDrift': ' (the tags of the heading begin with yaw)'}
 
     def load(self) -> None:
         """Read the tags; find the link."""
@@ -72,25 +71,35 @@ class HectorImu(LinkImu):
         proper = subtract(mean_acceleration(self._before, now_ns, linear), gravity)
         self._before = now_ns, linear
         accel_bias, rate_bias, (yaw,) = (
-            model.bias(now_ns / NANOSECONDS) for model in (self._accel, self._rate, self._yaw))
+            model.bias(now_ns / NANOSECONDS) for model in (self._accel, self._rate, self._yaw)
+        )
         error = _attitude_error(
-            rotate(pose.orientation, as_vector(accel_bias.tolist())), yaw, math.hypot(*gravity))
+            rotate(pose.orientation, as_vector(accel_bias.tolist())), yaw, math.hypot(*gravity)
+        )
         random = self._random.at(self.world.clock.steps)
         rate, accel = (
-            model.measured(rotate(back, values), bias, random) for model, values, bias in (
-                (self._rate, angular, rate_bias), (self._accel, proper, accel_bias)))
-        self.imu.send(ImuReading(
-            multiply(error, pose.orientation), rate, accel, self._variances()))
-        self.bias.send(ImuReading(
-            error, as_vector(rate_bias.tolist()), as_vector(accel_bias.tolist())))
+            model.measured(rotate(back, values), bias, random)
+            for model, values, bias in (
+                (self._rate, angular, rate_bias),
+                (self._accel, proper, accel_bias),
+            )
+        )
+        self.imu.send(ImuReading(multiply(error, pose.orientation), rate, accel, self._variances()))
+        self.bias.send(
+            ImuReading(error, as_vector(rate_bias.tolist()), as_vector(accel_bias.tolist()))
+        )
 
     def _variances(self) -> tuple[float, ...]:
         """Return those of orientation (-1 for a tilt without gravity), rate and acceleration."""
-        accel: Floats = self._accel.noise ** 2
+        accel: Floats = self._accel.noise**2
         weight = math.hypot(*self.world.physics.gravity) ** 2
         tilt = (accel[:2] / weight).tolist() if weight > 0.0 else [-1.0, -1.0]
-        return (*tilt, float(self._yaw.noise[0]) ** 2, *(self._rate.noise ** 2).tolist(),
-                *accel.tolist())
+        return (
+            *tilt,
+            float(self._yaw.noise[0]) ** 2,
+            *(self._rate.noise**2).tolist(),
+            *accel.tolist(),
+        )
 
 
 def _attitude_error(bias: Vector, yaw: float, gravity: float) -> Quaternion:

@@ -87,7 +87,8 @@ class ImuSensor(Sensor):
         measured: Sequence[float] = (*rotate(back, angular), *rotate(back, proper))
         if any(self._noises):
             measured = noisy(
-                measured, self._noises, self.random, self.world.clock.steps, self.noise_scale)
+                measured, self._noises, self.random, self.world.clock.steps, self.noise_scale
+            )
         wx, wy, wz, ax, ay, az = measured
         return ImuReading(orientation, (wx, wy, wz), (ax, ay, az))
 
@@ -97,9 +98,7 @@ class ImuSensor(Sensor):
         return pose.orientation, twist
 
 
-def mean_acceleration(
-    before: tuple[int, Vector] | None, now_ns: int, velocity: Vector
-) -> Vector:
+def mean_acceleration(before: tuple[int, Vector] | None, now_ns: int, velocity: Vector) -> Vector:
     """Return the mean acceleration [m/s^2] since `before`, a time [ns] and a velocity [m/s]."""
     if before is None or now_ns <= before[0]:
         return (0.0, 0.0, 0.0)
@@ -138,11 +137,15 @@ class ImuSensorPlugin(SensorPlugin[ImuReading]):
         read('xyzOffset', '0 0 0')
         self._turn = from_rpy(*self.params.vector('rpyOffset'))
         self._reference = None
-        if self.params.text('initialOrientationAsReference') is not None and \
-                read('initialOrientationAsReference', False):
+        if self.params.text('initialOrientationAsReference') is not None and read(
+            'initialOrientationAsReference', False
+        ):
             self._reference = conjugate(self.sensor.pose.orientation)
-            logger.warning('%s<initialOrientationAsReference> set to true, this behavior is '
-                           'deprecated as it does not comply with REP 145.', self.log_prefix)
+            logger.warning(
+                '%s<initialOrientationAsReference> set to true, this behavior is '
+                'deprecated as it does not comply with REP 145.',
+                self.log_prefix,
+            )
         self.imu = self.output('imu')
 
     def process(self, reading: ImuReading) -> None:
@@ -150,10 +153,14 @@ class ImuSensorPlugin(SensorPlugin[ImuReading]):
         orientation = reading.orientation
         if self._reference is not None:
             orientation = multiply(self._reference, orientation)
-        numbers: Sequence[float] = (*multiply(self._turn, orientation), *reading.angular_velocity,
-                                    *reading.linear_acceleration)
+        numbers: Sequence[float] = (
+            *multiply(self._turn, orientation),
+            *reading.angular_velocity,
+            *reading.linear_acceleration,
+        )
         if self._noise:
             numbers = noisy(numbers, [self._noise] * 10, self.random, self.world.clock.steps)
         x, y, z, w, wx, wy, wz, ax, ay, az = numbers
         self.imu.send(
-            ImuReading((x, y, z, w), (wx, wy, wz), (ax, ay, az), (self._noise.deviation ** 2,) * 9))
+            ImuReading((x, y, z, w), (wx, wy, wz), (ax, ay, az), (self._noise.deviation**2,) * 9)
+        )

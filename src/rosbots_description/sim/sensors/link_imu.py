@@ -71,8 +71,11 @@ class LinkImu(PeriodicPlugin):
         if self._noise:
             numbers = noisy(numbers, [self._noise] * 6, self._random, self.world.clock.steps)
         wx, wy, wz, ax, ay, az = numbers
-        self.imu.send(ImuReading(
-            pose.orientation, (wx, wy, wz), (ax, ay, az), (self._noise.deviation ** 2,) * 9))
+        self.imu.send(
+            ImuReading(
+                pose.orientation, (wx, wy, wz), (ax, ay, az), (self._noise.deviation**2,) * 9
+            )
+        )
 
     def _state(self) -> tuple[Pose, Twist]:
         """Return pose and twist of the IMU's frame in the world."""

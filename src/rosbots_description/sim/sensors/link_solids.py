@@ -45,7 +45,8 @@ class LinkSolids:
         """Return the rows of the solids of some links, ascending, and the place of each's link."""
         places = np.full(max(self._links, default=0) + 1, -1)
         places[[link for link in links if link < len(places)]] = [
-            place for place, link in enumerate(links) if link < len(places)]
+            place for place, link in enumerate(links) if link < len(places)
+        ]
         of_all = places[self._links]
         rows = np.flatnonzero(of_all >= 0)
         return rows, of_all[rows]

@@ -62,14 +62,20 @@ def read_noise(element: Element | None) -> GaussianNoise:
         PluginError: a number is not finite, or the deviation is negative.
     """
     kind = None if element is None else element.child('type')
-    written = kind.text if kind is not None else \
-        '' if element is None else element.attributes.get('type', '')
+    written = (
+        kind.text
+        if kind is not None
+        else ''
+        if element is None
+        else element.attributes.get('type', '')
+    )
     if element is None or written not in ('gaussian', 'gaussian_quantized'):
         return GaussianNoise()
     deviation = number(element, 'stddev', 0.0)
     if deviation < 0.0:
-        raise PluginError(f'line {element.line}: <stddev> of <noise> is {deviation:g}; it must not '
-                          'be negative')
+        raise PluginError(
+            f'line {element.line}: <stddev> of <noise> is {deviation:g}; it must not be negative'
+        )
     return GaussianNoise(number(element, 'mean', 0.0), deviation)
 
 
@@ -85,10 +91,15 @@ def gaussian(deviation: float, what: str) -> GaussianNoise:
 
 
 def noisy(
-    values: Sequence[float], noises: Sequence[GaussianNoise], random: RandomSteps, step: int,
+    values: Sequence[float],
+    noises: Sequence[GaussianNoise],
+    random: RandomSteps,
+    step: int,
     scale: float = 1.0,
 ) -> tuple[float, ...]:
     """Return the values, each with its own noise for that step; `scale` is of the deviations."""
     standard = random.at(step).standard_normal(len(values)).tolist()
-    return tuple(value + noise.mean + scale * noise.deviation * one
-                 for value, noise, one in zip(values, noises, standard, strict=True))
+    return tuple(
+        value + noise.mean + scale * noise.deviation * one
+        for value, noise, one in zip(values, noises, standard, strict=True)
+    )

@@ -40,6 +40,7 @@ def count(element: Element | None, path: str, default: int, most: int) -> int:
     """
     value, child = number(element, path, default), child_at(element, path)
     if child is not None and not 1.0 <= value <= most:
-        raise PluginError(f'line {child.line}: <{child.tag}> is {value:g}; it takes a number from '
-                          f'1 to {most}')
+        raise PluginError(
+            f'line {child.line}: <{child.tag}> is {value:g}; it takes a number from 1 to {most}'
+        )
     return int(value)

@@ -45,8 +45,10 @@ class RangePlugin(SensorPlugin[Scan]):
         is_infrared = read('radiation', 'ultrasound') != 'ultrasound'
         field_of_view = read('fov', 0.05)
         if abs(field_of_view) > MAX_ANGLE:
-            raise PluginError(f'{self.prefix}<fov> is {field_of_view:g} rad; it must lie between '
-                              f'-{MAX_ANGLE:g} and {MAX_ANGLE:g}')
+            raise PluginError(
+                f'{self.prefix}<fov> is {field_of_view:g} rad; it must lie between '
+                f'-{MAX_ANGLE:g} and {MAX_ANGLE:g}'
+            )
         self._fixed = self.sensor.range_min, self.sensor.range_max, field_of_view, is_infrared
         self.noise = gaussian(read('gaussianNoise', 0.0), '<gaussianNoise>')
         self.rate = self.params.rate('updateRate', 0.0)

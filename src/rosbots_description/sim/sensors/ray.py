@@ -53,14 +53,18 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
     resolution = number(element, 'resolution', 1.0)
     if not 1.0 <= samples * resolution <= MAX_SAMPLES:
         line = 0 if element is None else element.line
-        raise PluginError(f'line {line}: <resolution> is {resolution:g}; with {samples} '
-                          f'<samples> it must give 1 to {MAX_SAMPLES} ranges')
+        raise PluginError(
+            f'line {line}: <resolution> is {resolution:g}; with {samples} '
+            f'<samples> it must give 1 to {MAX_SAMPLES} ranges'
+        )
     angles = []
     for tag in ('min_angle', 'max_angle'):
         angles.append(number(element, tag, 0.0))
         if element is not None and abs(angles[-1]) > MAX_ANGLE:
-            raise PluginError(f'line {element.line}: <{tag}> is {angles[-1]:g} rad; it must lie '
-                              f'between -{MAX_ANGLE:g} and {MAX_ANGLE:g}')
+            raise PluginError(
+                f'line {element.line}: <{tag}> is {angles[-1]:g} rad; it must lie '
+                f'between -{MAX_ANGLE:g} and {MAX_ANGLE:g}'
+            )
     return Sweep(samples, int(samples * resolution), *angles)
 
 
@@ -79,18 +83,24 @@ class RaySensor(Sensor):
         """Read angles, limits and noise."""
         ray = self.spec.element.child('ray') or self.spec.element.child('lidar')
         if ray is None:
-            raise PluginError(f'line {self.spec.element.line}: a <sensor> of type '
-                              f"'{self.spec.type}' without <ray>")
+            raise PluginError(
+                f'line {self.spec.element.line}: a <sensor> of type '
+                f"'{self.spec.type}' without <ray>"
+            )
         self.horizontal = read_sweep(child_at(ray, 'scan/horizontal'), 640)
         self.vertical = read_sweep(child_at(ray, 'scan/vertical'), 1)
         self.range_min = number(ray, 'range/min', 0.0)
         self.range_max = number(ray, 'range/max', 0.0)
         if not 0.0 <= self.range_min < self.range_max <= MAX_FLOAT32:
-            raise PluginError(f'line {ray.line}: <range> is from {self.range_min:g} to '
-                              f'{self.range_max:g} m; it must begin at 0 or more and end beyond, '
-                              f'at most at {MAX_FLOAT32:g}, which is all that a scan can hold')
-        total = max(self.horizontal.samples * self.vertical.samples,
-                    self.horizontal.count * self.vertical.count)
+            raise PluginError(
+                f'line {ray.line}: <range> is from {self.range_min:g} to '
+                f'{self.range_max:g} m; it must begin at 0 or more and end beyond, '
+                f'at most at {MAX_FLOAT32:g}, which is all that a scan can hold'
+            )
+        total = max(
+            self.horizontal.samples * self.vertical.samples,
+            self.horizontal.count * self.vertical.count,
+        )
         if total > MAX_SAMPLES:
             raise PluginError(f'line {ray.line}: {total} rays; at most {MAX_SAMPLES} are cast')
         self.noise = read_noise(ray.child('noise') or child_at(ray, 'range/noise'))
@@ -101,9 +111,13 @@ class RaySensor(Sensor):
         self.blend = self.fan.blend
         self._is_whole = self.fan.shape == (self.vertical.count, self.horizontal.count)
         spans = max(1, self.horizontal.count - 1)
-        self._fixed = (self.horizontal.least, self.horizontal.greatest,
-                       (self.horizontal.greatest - self.horizontal.least) / spans,
-                       self.range_min, self.range_max)
+        self._fixed = (
+            self.horizontal.least,
+            self.horizontal.greatest,
+            (self.horizontal.greatest - self.horizontal.least) / spans,
+            self.range_min,
+            self.range_max,
+        )
 
     def unload(self) -> None:
         """Free the arrays, which are as large as many models."""
@@ -127,7 +141,8 @@ class RaySensor(Sensor):
         missed = ranges >= self.range_max
         if self.noise:
             ranges = self.noise.added_to(
-                ranges, self.random.at(self.world.clock.steps), self.noise_scale)
+                ranges, self.random.at(self.world.clock.steps), self.noise_scale
+            )
             ranges = ranges.clip(self.range_min, self.range_max)
         ranges = np.where(missed, math.inf, ranges)
         return Scan(ranges, retro, *self._fixed)

@@ -99,8 +99,9 @@ class RayFan:
         least, greatest = self._elevations = sorted((rows.angles[0], rows.angles[-1]))
         # Rays between two cones; beyond the poles they would be on both sides of the axis.
         self._is_band = -math.pi / 2.0 < least and greatest < math.pi / 2.0
-        self._band = tuple((math.sin(angle), math.cos(angle))
-                           for angle in (least - _SLACK, greatest + _SLACK))
+        self._band = tuple(
+            (math.sin(angle), math.cos(angle)) for angle in (least - _SLACK, greatest + _SLACK)
+        )
         self._is_half = self._is_band and ends[1] - ends[0] <= math.pi + _SLACK
         middle = (ends[0] + ends[1]) / 2.0
         self._middle = math.cos(middle), math.sin(middle)
@@ -148,12 +149,11 @@ class RayFan:
         ahead += flat * flat
         np.maximum(ahead, _ON_AXIS, out=ahead)
         slopes, is_ahead = across / ahead, ahead.min(axis=0) > _ON_AXIS
-        np.maximum(
-            low, middle + np.arctan(slopes.min(axis=0)) - _SLACK, out=low, where=is_ahead)
-        np.minimum(
-            high, middle + np.arctan(slopes.max(axis=0)) + _SLACK, out=high, where=is_ahead)
+        np.maximum(low, middle + np.arctan(slopes.min(axis=0)) - _SLACK, out=low, where=is_ahead)
+        np.minimum(high, middle + np.arctan(slopes.max(axis=0)) + _SLACK, out=high, where=is_ahead)
         columns, columns_end = self.columns.within(
-            low[:, None] + self._turns, high[:, None] + self._turns)
+            low[:, None] + self._turns, high[:, None] + self._turns
+        )
         there = columns_end > columns
         if self.shape[0] > 1:
             far = np.hypot(flat, z)
@@ -162,8 +162,13 @@ class RayFan:
         else:
             rows, rows_end = np.zeros(len(x), np.int64), np.ones(len(x), np.int64)
         shapes, turns = np.nonzero(there)
-        return Patches(shapes, rows[shapes], rows_end[shapes],
-                       columns[shapes, turns], columns_end[shapes, turns])
+        return Patches(
+            shapes,
+            rows[shapes],
+            rows_end[shapes],
+            columns[shapes, turns],
+            columns_end[shapes, turns],
+        )
 
     def rays(self, patches: Patches) -> tuple[Indices, Indices, Indices]:
         """Return indices of patches and rays, and the counts of rays by patch.
@@ -188,7 +193,8 @@ class RayFan:
         corners = tuple(
             ((row[:, None] * self.shape[1] + column).ravel(), np.outer(a, b).ravel())
             for row, a in ((low, 1.0 - up), (high, up))
-            for column, b in ((left, 1.0 - along), (right, along)))
+            for column, b in ((left, 1.0 - along), (right, along))
+        )
         return Blend(corners, (low + high) / 2.0, (left + right) / 2.0)
 
 

@@ -53,7 +53,9 @@ class EmbreeTree:
         """Return the distances of the first hits [m], 1e37 where nothing is hit."""
         met: Floats = self._scene.run(
             np.ascontiguousarray(start, dtype=np.float32),
-            np.ascontiguousarray(way, dtype=np.float32), query='DISTANCE')
+            np.ascontiguousarray(way, dtype=np.float32),
+            query='DISTANCE',
+        )
         return met
 
 

@@ -33,7 +33,10 @@ Floats = NDArray[np.float64]
 
 Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
 _FORMULAS: dict[type, Formula] = {
-    Box: ray_shapes.box, Cylinder: ray_shapes.cylinder, Sphere: ray_shapes.sphere}
+    Box: ray_shapes.box,
+    Cylinder: ray_shapes.cylinder,
+    Sphere: ray_shapes.sphere,
+}
 _MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
 MANY_RAYS, MAX_RAYS = 200_000, 5_000_000  # of all sensors of a world, each with one scan
 
@@ -70,14 +73,20 @@ class RayScene:
         """
         total = rays + sum(self._rays.values())
         if total > MAX_RAYS:
-            raise PluginError(f'{sensor.called}: the sensors of this world would cast {total} rays '
-                              f'with it; at most {MAX_RAYS} are cast')
+            raise PluginError(
+                f'{sensor.called}: the sensors of this world would cast {total} rays '
+                f'with it; at most {MAX_RAYS} are cast'
+            )
         self._rays[sensor] = rays
         if total > MANY_RAYS and total >= 2 * self._reported:
             self._reported = total
             logger.warning(
                 "model '%s', %s: %d rays, with those of all other sensors, take long; the "
-                'simulation waits for each scan', sensor.model.name, sensor.called, total)
+                'simulation waits for each scan',
+                sensor.model.name,
+                sensor.called,
+                total,
+            )
 
     def remove_rays(self, sensor: 'Sensor') -> None:
         """Count the rays of a sensor no more."""
@@ -101,9 +110,7 @@ class RayScene:
     def world_reset(self) -> None:
         """Keep all meshes."""
 
-    def cast(
-        self, pose: Pose, fan: RayFan, least: float, most: float
-    ) -> tuple[Floats, Floats]:
+    def cast(self, pose: Pose, fan: RayFan, least: float, most: float) -> tuple[Floats, Floats]:
         """Return the distances (n,) [m] of the first hits, and the laser_retro (n,) of what is hit.
 
         Args:
@@ -125,7 +132,8 @@ class RayScene:
     ) -> None:
         heights = ((self._points - origin) * self._normals).sum(axis=1)
         for height, slopes, shine in zip(
-                heights.tolist(), self._normals @ ways, self._plane_retro, strict=True):
+            heights.tolist(), self._normals @ ways, self._plane_retro, strict=True
+        ):
             if abs(height) > max(slopes.max(), -slopes.min()) * distances.max():
                 continue  # out of reach
             met = height / slopes
@@ -133,7 +141,12 @@ class RayScene:
             distances[closer], retro[closer] = met[closer], shine
 
     def _meet_solids(
-        self, origin: Floats, turn: Floats, fan: RayFan, least: float, distances: Floats,
+        self,
+        origin: Floats,
+        turn: Floats,
+        fan: RayFan,
+        least: float,
+        distances: Floats,
         retro: Floats,
     ) -> None:
         solids, most = self._solids, distances.max()
@@ -144,12 +157,11 @@ class RayScene:
         axes, halves = solids.axes[some], self._halves[:, some]
         inwards = turn.T @ axes
         starts = np.einsum('ij,ijk->ki', -offsets[some], axes)  # of the rays, in the shapes' frames
-        patches = fan.near(
-            centres[some], self._radii[some], corners_of(inwards, halves), most)
+        patches = fan.near(centres[some], self._radii[some], corners_of(inwards, halves), most)
         laid_out = np.concatenate((starts, halves, inwards.reshape(-1, 9).T))  # (15, m)
         at_once = max(1, _MOST // len(distances))
         for begin in range(0, len(patches.shapes), at_once):
-            batch = Patches(*(part[begin:begin + at_once] for part in patches))
+            batch = Patches(*(part[begin : begin + at_once] for part in patches))
             which, ray, counts = fan.rays(batch)
             # take keeps the pairs of a row contiguous in memory, unlike indexing.
             pairs = laid_out.take(batch.shapes[which], axis=1)
@@ -157,11 +169,17 @@ class RayScene:
             ways = np.einsum('ip,ijp->jp', along, pairs[6:].reshape(3, 3, -1))
             rows = some[batch.shapes]
             met = self._meet(
-                rows, [0, *counts.cumsum().tolist()], least, pairs[:3], ways, pairs[3:6])
+                rows, [0, *counts.cumsum().tolist()], least, pairs[:3], ways, pairs[3:6]
+            )
             self._keep_nearest(distances, retro, fan, batch, met, self._retro[rows])
 
     def _meet(
-        self, shapes: Indices, ends: Sequence[int], least: float, start: Floats, way: Floats,
+        self,
+        shapes: Indices,
+        ends: Sequence[int],
+        least: float,
+        start: Floats,
+        way: Floats,
         half: Floats,
     ) -> Floats:
         """Return the hit distances of p ray-shape pairs.
@@ -178,16 +196,21 @@ class RayScene:
             if last > first:
                 some = slice(ends[first], ends[last])
                 met[some] = ray_shapes.first_from(
-                    least, *formula(start[:, some], way[:, some], half[:, some]))
+                    least, *formula(start[:, some], way[:, some], half[:, some])
+                )
             first = last
         for number in range(first, len(shapes)):
             some = slice(ends[number], ends[number + 1])
-            met[some] = self._meshes[int(shapes[number])].meet(
-                start[:, some], way[:, some], least)
+            met[some] = self._meshes[int(shapes[number])].meet(start[:, some], way[:, some], least)
         return met
 
     def _keep_nearest(
-        self, distances: Floats, retro: Floats, fan: RayFan, patches: Patches, met: Floats,
+        self,
+        distances: Floats,
+        retro: Floats,
+        fan: RayFan,
+        patches: Patches,
+        met: Floats,
         shine: Floats,
     ) -> None:
         """Update distances and laser_retro of rays (n,) to the nearest hits, in place.
@@ -200,7 +223,8 @@ class RayScene:
         grid, glow = distances.reshape(fan.shape), retro.reshape(fan.shape)
         begin = 0
         for _, top, bottom, left, right, own in zip(
-                *(part.tolist() for part in (*patches, shine)), strict=True):
+            *(part.tolist() for part in (*patches, shine)), strict=True
+        ):
             patch = slice(top, bottom), slice(left, right)
             end = begin + (bottom - top) * (right - left)
             mine = met[begin:end].reshape(bottom - top, right - left)
@@ -254,8 +278,11 @@ class RayScene:
                 solids.append((link, collision))
                 halves.append(mesh.half)
                 radii.append(mesh.radius)
-        self._planes = [(link, collision, collision.geometry.normal) for link, collision in found
-                        if isinstance(collision.geometry, Plane)]
+        self._planes = [
+            (link, collision, collision.geometry.normal)
+            for link, collision in found
+            if isinstance(collision.geometry, Plane)
+        ]
         self._halves, self._radii = np.array(halves).reshape(-1, 3).T, np.array(radii)
         self._points, self._normals = np.zeros((2, len(self._planes), 3))
         self._retro = np.array([collision.surface.laser_retro for _, collision in solids])
@@ -263,16 +290,22 @@ class RayScene:
         self._shines = bool(self._retro.any() or self._plane_retro.any())
         numbers = {link: number for number, link in enumerate(self._links)}
         self._solids = LinkSolids(
-            [numbers[link] for link, _ in solids], [collision.pose for _, collision in solids],
-            {row: mesh.centre for row, mesh in self._meshes.items()})
+            [numbers[link] for link, _ in solids],
+            [collision.pose for _, collision in solids],
+            {row: mesh.centre for row, mesh in self._meshes.items()},
+        )
         self._rows = self._solids.of([numbers[link] for link in self._links])
         self._moving_rows = self._solids.of([numbers[link] for link in self._moving])
 
     def _build(self, shapes: Iterable[Geometry]) -> None:
         """Begin to build the meshes among some shapes, unless that was done before."""
-        self._known_meshes.update(build_later(
-            shape for shape in dict.fromkeys(shapes)
-            if isinstance(shape, Mesh) and shape not in self._known_meshes))
+        self._known_meshes.update(
+            build_later(
+                shape
+                for shape in dict.fromkeys(shapes)
+                if isinstance(shape, Mesh) and shape not in self._known_meshes
+            )
+        )
 
     def _built_mesh(self, shape: Geometry) -> RayMesh | None:
         """Return the RayMesh of a mesh once it is built; None for others, and if it cannot be."""
@@ -309,8 +342,13 @@ def _half_extents(shape: Geometry) -> Vector:
 def _radius(shape: Geometry) -> float:
     """Return the radius of a shape's bounding sphere [m], with a margin for rounding."""
     x, y, z = _half_extents(shape)
-    radius = x if isinstance(shape, Sphere) else \
-        math.hypot(x, z) if isinstance(shape, Cylinder) else math.hypot(x, y, z)
+    radius = (
+        x
+        if isinstance(shape, Sphere)
+        else math.hypot(x, z)
+        if isinstance(shape, Cylinder)
+        else math.hypot(x, y, z)
+    )
     return radius * (1.0 + 1e-9) + 1e-9
 
 

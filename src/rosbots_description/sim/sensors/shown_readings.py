@@ -22,10 +22,18 @@ GREATEST = 640  # pixels of a shown picture's longer side; others are left out e
 # Bytes or numbers of a pixel, and which of them are red, green and blue.
 _RGB, _BGR, _GREY = (0, 1, 2), (2, 1, 0), (0, 0, 0)
 ENCODINGS: Mapping[str, tuple[str, int, tuple[int, int, int]]] = {
-    'rgb8': ('u1', 3, _RGB), 'rgba8': ('u1', 4, _RGB), '8UC3': ('u1', 3, _BGR),
-    'bgr8': ('u1', 3, _BGR), 'bgra8': ('u1', 4, _BGR), '8UC4': ('u1', 4, _BGR),
-    'mono8': ('u1', 1, _GREY), '8UC1': ('u1', 1, _GREY), 'rgb16': ('u2', 3, _RGB),
-    'mono16': ('u2', 1, _GREY), '16UC1': ('u2', 1, _GREY), '32FC1': ('f4', 1, _GREY),
+    'rgb8': ('u1', 3, _RGB),
+    'rgba8': ('u1', 4, _RGB),
+    '8UC3': ('u1', 3, _BGR),
+    'bgr8': ('u1', 3, _BGR),
+    'bgra8': ('u1', 4, _BGR),
+    '8UC4': ('u1', 4, _BGR),
+    'mono8': ('u1', 1, _GREY),
+    '8UC1': ('u1', 1, _GREY),
+    'rgb16': ('u2', 3, _RGB),
+    'mono16': ('u2', 1, _GREY),
+    '16UC1': ('u2', 1, _GREY),
+    '32FC1': ('f4', 1, _GREY),
     **{f'bayer_{order}8': ('u1', 1, _GREY) for order in ('rggb', 'bggr', 'gbrg', 'grbg')},
 }
 
@@ -40,12 +48,14 @@ def shown_picture(values: NDArray[Any], encoding: str) -> NDArray[np.uint8]:
         SimError: the encoding is another one.
     """
     if encoding not in ENCODINGS:
-        raise SimError(f"its encoding '{encoding}' is not shown; "
-                       f'those that are: {", ".join(ENCODINGS)}')
+        raise SimError(
+            f"its encoding '{encoding}' is not shown; those that are: {', '.join(ENCODINGS)}"
+        )
     order = ENCODINGS[encoding][2]
     stride = picture_stride(*values.shape[:2])
-    values = values[::stride, ::stride].reshape(
-        *values[::stride, ::stride].shape[:2], -1)[:, :, list(order)]
+    values = values[::stride, ::stride].reshape(*values[::stride, ::stride].shape[:2], -1)[
+        :, :, list(order)
+    ]
     return values if values.dtype == np.uint8 else _bytes(values)
 
 
@@ -65,7 +75,7 @@ def shown_rays(ends: NDArray[Any], count: int, frame: str = '') -> ShownReading:
     words = f'{len(ends)} of {count} rays meet something'
     if len(ends):
         words += f', the nearest at {np.linalg.norm(ends, axis=1).min():.3f} m'
-    sampled = ends[::max(1, -(-len(ends) // MAX_RAYS))]
+    sampled = ends[:: max(1, -(-len(ends) // MAX_RAYS))]
     return ShownReading(frame, points=ends, lines=ray_lines(sampled), words=words)
 
 
@@ -74,8 +84,12 @@ def ray_lines(ends: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.stack([np.zeros_like(ends), ends], axis=1)
 
 
-def shown_contacts(points: Collection[Vector], normals: Collection[Vector],
-                   forces: Collection[tuple[str, str, float]], frame: str = '') -> ShownReading:
+def shown_contacts(
+    points: Collection[Vector],
+    normals: Collection[Vector],
+    forces: Collection[tuple[str, str, float]],
+    frame: str = '',
+) -> ShownReading:
     """Return contacts with their normals, and in words which collisions touch.
 
     Args:
@@ -87,8 +101,12 @@ def shown_contacts(points: Collection[Vector], normals: Collection[Vector],
     lines = sorted({f'{one} and {other}: {force:.2f} N' for one, other, force in forces})
     if len(lines) > MAX_CONTACTS:
         lines[MAX_CONTACTS:] = [f'and {len(lines) - MAX_CONTACTS} more']
-    return ShownReading(frame, points=here, lines=np.stack([here, there], axis=1),
-                        words='\n'.join(lines) or 'no contact')
+    return ShownReading(
+        frame,
+        points=here,
+        lines=np.stack([here, there], axis=1),
+        words='\n'.join(lines) or 'no contact',
+    )
 
 
 def shown_reading(sensor: Sensor, reading: Any, frame: str) -> ShownReading:  # noqa: ANN401  each type of sensor has its own readings
@@ -116,33 +134,52 @@ def _scan(sensor: RaySensor, scan: Scan, frame: str) -> ShownReading:
     rows, columns = sensor.vertical, sensor.horizontal
     yaw = np.linspace(scan.angle_min, scan.angle_max, columns.count)
     pitch = np.linspace(rows.least, rows.greatest, rows.count)[:, None]
-    ways = np.stack(np.broadcast_arrays(
-        np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)), axis=-1)
+    ways = np.stack(
+        np.broadcast_arrays(
+            np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)
+        ),
+        axis=-1,
+    )
     hit = np.isfinite(scan.ranges)
     return shown_rays(scan.ranges[hit, None] * ways.reshape(-1, 3)[hit], len(hit), frame)
 
 
 def _imu(_sensor: ImuSensor, reading: ImuReading, _frame: str) -> ShownReading:
-    return ShownReading(rows=tuple((name, ' '.join(f'{value:.4g}' for value in values))
-                                   for name, values in (
-        ('orientation', reading.orientation),
-        ('angular velocity [rad/s]', reading.angular_velocity),
-        ('linear acceleration [m/s^2]', reading.linear_acceleration))))
+    return ShownReading(
+        rows=tuple(
+            (name, ' '.join(f'{value:.4g}' for value in values))
+            for name, values in (
+                ('orientation', reading.orientation),
+                ('angular velocity [rad/s]', reading.angular_velocity),
+                ('linear acceleration [m/s^2]', reading.linear_acceleration),
+            )
+        )
+    )
 
 
 def _contacts(_sensor: ContactSensor, pairs: tuple[ContactPair, ...], _frame: str) -> ShownReading:
     newest = max((pair.time_ns for pair in pairs), default=0)
     now = [pair for pair in pairs if pair.time_ns == newest]
     points = [point for pair in now for point in pair.points]
-    forces = [(pair.first, pair.second,
-               float(np.linalg.norm(np.sum([point.force for point in pair.points], axis=0))))
-              for pair in now]
-    return shown_contacts([point.position for point in points],
-                          [point.normal for point in points], forces)
+    forces = [
+        (
+            pair.first,
+            pair.second,
+            float(np.linalg.norm(np.sum([point.force for point in pair.points], axis=0))),
+        )
+        for pair in now
+    ]
+    return shown_contacts(
+        [point.position for point in points], [point.normal for point in points], forces
+    )
 
 
 _SHOWN: dict[type[Sensor], Callable[[Any, Any, str], ShownReading]] = {
-    CameraSensor: _picture, RaySensor: _scan, ImuSensor: _imu, ContactSensor: _contacts}
+    CameraSensor: _picture,
+    RaySensor: _scan,
+    ImuSensor: _imu,
+    ContactSensor: _contacts,
+}
 
 
 def _bytes(values: NDArray[Any]) -> NDArray[np.uint8]:

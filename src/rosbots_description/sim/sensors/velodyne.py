@@ -18,8 +18,16 @@ from .ray_fan import Sweep
 
 logger = logging.getLogger(__name__)
 
-RING_POINT = np.dtype([('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('intensity', '<f4'),
-                       ('ring', '<u2'), ('time', '<f4')])
+RING_POINT = np.dtype(
+    [
+        ('x', '<f4'),
+        ('y', '<f4'),
+        ('z', '<f4'),
+        ('intensity', '<f4'),
+        ('ring', '<u2'),
+        ('time', '<f4'),
+    ]
+)
 
 
 class RingCloud(NamedTuple):
@@ -56,14 +64,21 @@ class VelodynePlugin(SensorPlugin[Scan]):
         self._most = min(read('max_range', math.inf, 'infinity'), sensor.range_max)
         self._dimmest = read('min_intensity', -math.inf, 'no clipping')
         if not self._least < self._most:
-            logger.warning('%sfinds no points: <min_range> leaves those beyond %g m, and '
-                           '<max_range> those nearer than %g m', self.log_prefix, self._least,
-                           self._most)
+            logger.warning(
+                '%sfinds no points: <min_range> leaves those beyond %g m, and '
+                '<max_range> those nearer than %g m',
+                self.log_prefix,
+                self._least,
+                self._most,
+            )
         self.cloud = self.output('cloud', bool(read('topicName', '/points')))
         self._noise = gaussian(read('gaussianNoise', 0.0, '0.0'), '<gaussianNoise>')
         yaw, pitch = _angles(sensor.horizontal)[:, None], _angles(sensor.vertical)
-        self._ways = (np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw),
-                      np.sin(pitch) + 0.0 * yaw)
+        self._ways = (
+            np.cos(pitch) * np.cos(yaw),
+            np.cos(pitch) * np.sin(yaw),
+            np.sin(pitch) + 0.0 * yaw,
+        )
 
     def process(self, reading: Scan) -> None:
         """Send the points of a scan."""
@@ -79,8 +94,9 @@ class VelodynePlugin(SensorPlugin[Scan]):
             points[axis] = ranges * way
         points['intensity'] = np.where(there, shine, math.nan)
         points['ring'] = np.arange(shape[0])
-        self.cloud.send(RingCloud(points if self._organised else points[there][None],
-                                  not self._organised))
+        self.cloud.send(
+            RingCloud(points if self._organised else points[there][None], not self._organised)
+        )
 
 
 def _angles(sweep: Sweep) -> NDArray[np.float64]:

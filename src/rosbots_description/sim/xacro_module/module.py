@@ -31,12 +31,17 @@ def import_xacro() -> ModuleType:
 
 
 def _write_element(
-    element: Element, writer: SupportsWrite[str], indent: str = '', addindent: str = '',
+    element: Element,
+    writer: SupportsWrite[str],
+    indent: str = '',
+    addindent: str = '',
     newl: str = '',
 ) -> None:
     """Write an element with sorted attributes and without text that is only white space."""
-    attributes = ''.join(f' {name}="{escape(value, {chr(34): "&quot;"})}"'
-                         for name, value in sorted(element.attributes.items()))
+    attributes = ''.join(
+        f' {name}="{escape(value, {chr(34): "&quot;"})}"'
+        for name, value in sorted(element.attributes.items())
+    )
     writer.write(f'{indent}<{element.tagName}{attributes}')
     children = element.childNodes
     if not children:

@@ -15,8 +15,10 @@ from rosbots_description.sim.runtime.world import World
 
 NAN = float('nan')
 STEP = Pose((1.0, 0.0, 0.0))
-PLUGIN = ('<gazebo><plugin name="hog" filename="libgazebo_ros_hand_of_god.so">'
-          '<linkName>base</linkName></plugin></gazebo>')
+PLUGIN = (
+    '<gazebo><plugin name="hog" filename="libgazebo_ros_hand_of_god.so">'
+    '<linkName>base</linkName></plugin></gazebo>'
+)
 
 
 @pytest.fixture
@@ -26,8 +28,11 @@ def world():
 
 
 def transform(parent, child):
-    edge = TransformStamped(Header(frame_id=parent), child, Transform(
-        Vector3(1.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0)))
+    edge = TransformStamped(
+        Header(frame_id=parent),
+        child,
+        Transform(Vector3(1.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0)),
+    )
     bad = TransformStamped(Header(frame_id=parent), child, Transform(Vector3(NAN, 0, 0), None))
     bad.transform.rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
     return TFMessage([edge, bad])

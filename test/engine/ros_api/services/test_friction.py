@@ -53,11 +53,14 @@ def test_friction_changes_and_acts_at_once(bench, name):
     assert deceleration(bench) == pytest.approx(0.4 * GRAVITY, rel=0.05)
 
 
-@pytest.mark.parametrize(('request_', 'sentence'), [
-    (SetFrictionRequest('b', 1.0, 1.0), "there is no model, link or collision named 'b'"),
-    (SetFrictionRequest('a', 1.0, -0.5), "friction of 'a' is -0.5; it must not be negative"),
-    (SetFrictionRequest('a', math.nan, 1.0), 'mu is nan; it must be a finite number'),
-])
+@pytest.mark.parametrize(
+    ('request_', 'sentence'),
+    [
+        (SetFrictionRequest('b', 1.0, 1.0), "there is no model, link or collision named 'b'"),
+        (SetFrictionRequest('a', 1.0, -0.5), "friction of 'a' is -0.5; it must not be negative"),
+        (SetFrictionRequest('a', math.nan, 1.0), 'mu is nan; it must be a finite number'),
+    ],
+)
 def test_what_cannot_be_is_refused_in_a_sentence(bench, request_, sentence):
     answer = bench.call('set_friction', request_)
     assert (answer.success, answer.status_message) == (False, f'SetFriction: Failure - {sentence}')
@@ -69,12 +72,16 @@ def test_a_nested_model_has_the_friction_of_its_own_links(bench):
     bench.world.spawn(outer, 'outer', Pose((5.0, 0.0, 1.0)))
     assert bench.call('set_friction', SetFrictionRequest('outer::arm', 0.2, 0.1)).success
     assert friction(bench, 'outer') == {
-        'outer::body::c': (1.0, 1.0), 'outer::arm::hand::c': (0.2, 0.1)}
+        'outer::body::c': (1.0, 1.0),
+        'outer::arm::hand::c': (0.2, 0.1),
+    }
 
 
 def test_a_link_that_touches_nothing_has_no_friction(bench):
-    ghost = urdf_spec('<link name="ghost"><inertial><mass value="1"/><inertia ixx="1" iyy="1" '
-                      'izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>')
+    ghost = urdf_spec(
+        '<link name="ghost"><inertial><mass value="1"/><inertia ixx="1" iyy="1" '
+        'izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    )
     bench.world.spawn(ghost, 'ghost', Pose((5.0, 0.0, 1.0)))
     assert friction(bench, 'ghost') == {}
     answer = bench.call('set_friction', SetFrictionRequest('ghost::ghost', 1.0, 1.0))

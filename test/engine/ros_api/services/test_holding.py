@@ -69,10 +69,16 @@ def test_model_that_goes_and_a_reset_end_a_hold(clock, world, box):
     assert world.holds.due == NEVER
 
 
-@pytest.mark.parametrize(('duration', 'name', 'pose'), [
-    (11.0, 'b', HIGH), (-1.0, 'b', HIGH), (math.nan, 'b', HIGH), (1.0, 'x', HIGH),
-    (1.0, 'b', Pose(PointMessage(math.inf, 0.0, 0.0), HIGH.orientation)),
-])
+@pytest.mark.parametrize(
+    ('duration', 'name', 'pose'),
+    [
+        (11.0, 'b', HIGH),
+        (-1.0, 'b', HIGH),
+        (math.nan, 'b', HIGH),
+        (1.0, 'x', HIGH),
+        (1.0, 'b', Pose(PointMessage(math.inf, 0.0, 0.0), HIGH.orientation)),
+    ],
+)
 def test_bad_requests_are_refused(world, box, duration, name, pose):
     before = box.pose
     assert not hold(world, duration, name, pose).success

@@ -33,9 +33,18 @@ def pose(x=0.0, y=0.0, z=0.0, **angles):
 
 def insert(bench, text, **request):
     """Insert on the ground beside the others; return the model."""
-    response = bench.call('insert_model', InsertModelRequest(
-        **{'model_xml': text, 'initial_pose': pose(), 'on_ground': True, 'beside': True,
-           **request}))
+    response = bench.call(
+        'insert_model',
+        InsertModelRequest(
+            **{
+                'model_xml': text,
+                'initial_pose': pose(),
+                'on_ground': True,
+                'beside': True,
+                **request,
+            }
+        ),
+    )
     assert response.success, response.status_message
     return bench.world.models[response.model_name]
 
@@ -43,8 +52,9 @@ def insert(bench, text, **request):
 def test_names_are_free(bench, world):
     assert [insert(bench, BOX).name for _ in range(3)] == ['b', 'b_0', 'b_1']
     assert insert(bench, BOX, model_name='mine').name == 'mine'
-    lamps = [bench.call('insert_model', InsertModelRequest(model_xml=LAMP)).model_name
-             for _ in range(2)]
+    lamps = [
+        bench.call('insert_model', InsertModelRequest(model_xml=LAMP)).model_name for _ in range(2)
+    ]
     assert lamps == ['lamp', 'lamp_0']
     assert list(world.lights) == ['sun', 'lamp', 'lamp_0']
 
@@ -52,8 +62,7 @@ def test_names_are_free(bench, world):
 @pytest.mark.parametrize(('text', 'names'), [(BOX, ['b', 'b_0']), (LAMP, ['lamp', 'lamp_0'])])
 def test_two_that_are_prepared_at_once_get_different_names(bench, text, names):
     service = ALL['insert_model']
-    prepared = [service.prepare(bench.server, InsertModelRequest(model_xml=text))
-                for _ in range(2)]
+    prepared = [service.prepare(bench.server, InsertModelRequest(model_xml=text)) for _ in range(2)]
     responses = [service.answer(bench.server, one) for one in prepared]
     assert [one.model_name for one in responses] == names
     assert all(one.success for one in responses)
@@ -102,8 +111,9 @@ def test_on_a_floor_there_is_room_and_above_what_fills_all_places_too(bench):
 
 def test_within_a_building_of_one_mesh_there_is_room(bench, tmp_path):
     walls = tmp_path / 'walls.obj'  # two triangles, 8 m apart
-    walls.write_text('v -4 -4 0\nv -4 4 0\nv -4 0 3\nv 4 -4 0\nv 4 4 0\nv 4 0 3\n'
-                     'f 1 2 3\nf 4 5 6\n')
+    walls.write_text(
+        'v -4 -4 0\nv -4 4 0\nv -4 0 3\nv 4 -4 0\nv 4 4 0\nv 4 0 3\nf 1 2 3\nf 4 5 6\n'
+    )
     building = WALL.replace('<box><size>{}</size></box>', f'<mesh><uri>file://{walls}</uri></mesh>')
     insert(bench, building)
     assert insert(bench, BOX).pose.position == (0.0, 0.0, 0.5)
@@ -120,8 +130,15 @@ def test_copy_is_as_the_model_is_now(bench, world):
     door.joints['hinge'].set_position(0.5)
     found = bench.call('get_model_description', GetModelDescriptionRequest('door'))
     assert found.joint_names == ['hinge']
-    copy = insert(bench, found.model_xml, initial_pose=found.pose, on_ground=False, beside=False,
-                  joint_names=found.joint_names, joint_positions=found.joint_positions)
+    copy = insert(
+        bench,
+        found.model_xml,
+        initial_pose=found.pose,
+        on_ground=False,
+        beside=False,
+        joint_names=found.joint_names,
+        joint_positions=found.joint_positions,
+    )
     assert copy.name == 'door_0'
     assert copy.joints['hinge'].position == pytest.approx(0.5)
     assert copy.pose.position == pytest.approx(door.pose.position)
@@ -129,14 +146,17 @@ def test_copy_is_as_the_model_is_now(bench, world):
     assert copy.spec.joints == door.spec.joints
 
 
-@pytest.mark.parametrize(('request_of', 'sentence'), [
-    ({'model_xml': ''}, 'empty'),
-    ({'model_xml': '<robot><link name="a"/></robot>'}, 'gives the model no name'),
-    ({'model_xml': BOX.replace('</robot>', '')}, 'model_xml, line'),
-    ({'model_xml': '<html name="a"/>', 'model_name': 'a'}, 'not SDF or URDF'),
-    ({'model_xml': BOX, 'joint_names': ['a']}, 'different lengths'),
-    ({'model_xml': BOX, 'initial_pose': pose(math.nan)}, 'initial_pose.position.x is nan'),
-])
+@pytest.mark.parametrize(
+    ('request_of', 'sentence'),
+    [
+        ({'model_xml': ''}, 'empty'),
+        ({'model_xml': '<robot><link name="a"/></robot>'}, 'gives the model no name'),
+        ({'model_xml': BOX.replace('</robot>', '')}, 'model_xml, line'),
+        ({'model_xml': '<html name="a"/>', 'model_name': 'a'}, 'not SDF or URDF'),
+        ({'model_xml': BOX, 'joint_names': ['a']}, 'different lengths'),
+        ({'model_xml': BOX, 'initial_pose': pose(math.nan)}, 'initial_pose.position.x is nan'),
+    ],
+)
 def test_bad_requests_are_refused_in_a_sentence(bench, world, request_of, sentence):
     response = bench.call('insert_model', InsertModelRequest(**request_of))
     assert not response.success

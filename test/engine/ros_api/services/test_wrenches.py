@@ -20,9 +20,15 @@ def test_wrench_may_be_given_in_the_frame_of_a_nested_model():
         spec, _ = load_sdf(NESTED, 'outer', find_model=lambda _: None)
         world.spawn(spec, 'outer', Pose((0.0, 10.0, 1.0), QUARTER))
         box = world.spawn(urdf_spec(box_urdf('1 1 1', 2.0)), 'box', Pose((0.0, 0.0, 9.0)))
-        answer = Bench(world).call('apply_body_wrench', ApplyBodyWrenchRequest(
-            body_name='box::box', reference_frame='outer::inner',
-            wrench=Wrench(force=Vector3(2.0, 0.0, 0.0)), duration=Duration(1)))
+        answer = Bench(world).call(
+            'apply_body_wrench',
+            ApplyBodyWrenchRequest(
+                body_name='box::box',
+                reference_frame='outer::inner',
+                wrench=Wrench(force=Vector3(2.0, 0.0, 0.0)),
+                duration=Duration(1),
+            ),
+        )
         assert answer.success
         world.run(100)
         vx, vy, _ = box.twist.linear

@@ -21,7 +21,8 @@ KINDS = {'set_model_state': ModelState, 'set_link_state': LinkState, 'cmd_vel': 
 # Without the ground: raising it lifts all models on it.
 LOOSE = tuple(name for name in NAMES if 'ground' not in name)
 SENT = st.sampled_from(sorted(KINDS)).flatmap(
-    lambda kind: st.tuples(st.just(kind), messages(KINDS[kind], LOOSE)))
+    lambda kind: st.tuples(st.just(kind), messages(KINDS[kind], LOOSE))
+)
 
 
 @pytest.fixture(scope='module')

@@ -10,7 +10,8 @@ from rosbots_description.sim.core import Pose, SimError, Twist, from_rpy
 TWO = box_urdf('1 1 1', 2.0) + (
     '<link name="arm"><inertial><mass value="1"/><inertia ixx="1" iyy="2" izz="2.5" ixy="0" '
     'ixz="0" iyz="0"/></inertial></link><joint name="j" type="continuous"><parent link="box"/>'
-    '<child link="arm"/><origin xyz="0 0 1"/><axis xyz="0 0 1"/></joint>')
+    '<child link="arm"/><origin xyz="0 0 1"/><axis xyz="0 0 1"/></joint>'
+)
 PLACE = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.0, 1.0))
 MOTION = Twist((0.5, 0.0, 0.0), (0.0, 0.0, 0.25))
 

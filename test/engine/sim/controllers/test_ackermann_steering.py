@@ -8,12 +8,17 @@ from support.cars import BASE, RADIUS, car
 from rosbots_description.sim import World, yaw_of
 from rosbots_description.sim.controllers import ControllerError
 
-TYPES = ['ackermann_steering_controller/AckermannSteeringController',
-         'steer_drive_controller/SteerDriveController']
+TYPES = [
+    'ackermann_steering_controller/AckermannSteeringController',
+    'steer_drive_controller/SteerDriveController',
+]
 PARAMETERS = {
-    'rear_wheel': 'rear_left_joint', 'front_steer': 'front_left_steer',
-    'wheel_separation_h': BASE, 'pose_covariance_diagonal': [1.0] * 6,
-    'twist_covariance_diagonal': [1.0] * 6}
+    'rear_wheel': 'rear_left_joint',
+    'front_steer': 'front_left_steer',
+    'wheel_separation_h': BASE,
+    'pose_covariance_diagonal': [1.0] * 6,
+    'twist_covariance_diagonal': [1.0] * 6,
+}
 FORWARD, ANGLE = 0.3, 0.2
 
 
@@ -53,8 +58,7 @@ def test_odometry_is_that_of_a_bicycle(world):
     turned, before = drive.planar.heading, bot.joint('rear_left_joint').position
     world.run(500)
     way = (bot.joint('rear_left_joint').position - before) * RADIUS
-    assert drive.planar.heading - turned == pytest.approx(
-        way * math.tan(ANGLE) / BASE, rel=0.01)
+    assert drive.planar.heading - turned == pytest.approx(way * math.tan(ANGLE) / BASE, rel=0.01)
     assert drive.planar.velocity[0] == pytest.approx(FORWARD, rel=0.01)
 
 
@@ -63,10 +67,14 @@ def test_it_claims_joints_of_two_interfaces(world):
     (status,) = bot.plugin('gazebo_ros_control').manager.list()
     assert status.claimed == (
         ('hardware_interface::VelocityJointInterface', ('rear_left_joint',)),
-        ('hardware_interface::PositionJointInterface', ('front_left_steer',)))
+        ('hardware_interface::PositionJointInterface', ('front_left_steer',)),
+    )
 
 
 def test_a_steering_joint_without_position_interface_is_named(world):
-    with pytest.raises(ControllerError, match="Could not find resource 'rear_right_joint' in "
-                                              "'hardware_interface::PositionJointInterface'"):
+    with pytest.raises(
+        ControllerError,
+        match="Could not find resource 'rear_right_joint' in "
+        "'hardware_interface::PositionJointInterface'",
+    ):
         spawned(world, parameters=PARAMETERS | {'front_steer': 'rear_right_joint'})

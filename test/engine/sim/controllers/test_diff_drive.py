@@ -11,17 +11,19 @@ from rosbots_description.sim import World, yaw_of
 from rosbots_description.sim.controllers import ControllerError
 
 TEXT = (DATA / 'robots' / 'burger_ros_control.urdf').read_text()
-CONTROL = TEXT[TEXT.index('<gazebo><plugin name="gazebo_ros_control"'):TEXT.index('</robot>')]
+CONTROL = TEXT[TEXT.index('<gazebo><plugin name="gazebo_ros_control"') : TEXT.index('</robot>')]
 PLUGIN = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <leftJoint>wheel_left_joint</leftJoint><rightJoint>wheel_right_joint</rightJoint>
 <wheelSeparation>0.16</wheelSeparation><wheelDiameter>0.066</wheelDiameter>
 <wheelTorque>1e9</wheelTorque><updateRate>0</updateRate></plugin></gazebo>"""
 TYPE = 'diff_drive_controller/DiffDriveController'
 PARAMETERS = {
-    'left_wheel': 'wheel_left_joint', 'right_wheel': ['wheel_right_joint'],
+    'left_wheel': 'wheel_left_joint',
+    'right_wheel': ['wheel_right_joint'],
     'pose_covariance_diagonal': [0.001, 0.001, 1e6, 1e6, 1e6, 1000.0],
     'twist_covariance_diagonal': [0.001, 0.001, 1e6, 1e6, 1e6, 1000.0],
-    'base_frame_id': 'base_footprint'}
+    'base_frame_id': 'base_footprint',
+}
 RAMP = {'linear': {'x': {'has_acceleration_limits': True, 'max_acceleration': 1.0}}}
 FORWARD, YAW_RATE = 0.2, 0.5
 
@@ -54,7 +56,8 @@ def test_a_robot_moves_alike_with_the_controller_and_with_the_plugin(world):
             owner.run(1000)
         assert robot.pose.position == pytest.approx(twin.pose.position, abs=1e-9)
         assert yaw_of(robot.pose.orientation) == pytest.approx(
-            yaw_of(twin.pose.orientation), abs=1e-9)
+            yaw_of(twin.pose.orientation), abs=1e-9
+        )
 
 
 def test_a_drive_moves_as_recorded(world):
@@ -111,36 +114,56 @@ def test_what_is_not_given_is_read_from_the_urdf(world):
 
 
 def test_a_command_is_limited_and_reported(world):
-    _, drive = spawned(world, PARAMETERS | {'publish_cmd': True, 'linear': {'x': {
-        'has_velocity_limits': True, 'max_velocity': 0.1,
-        'has_jerk_limits': True, 'max_jerk': 50.0}}})
+    _, drive = spawned(
+        world,
+        PARAMETERS
+        | {
+            'publish_cmd': True,
+            'linear': {
+                'x': {
+                    'has_velocity_limits': True,
+                    'max_velocity': 0.1,
+                    'has_jerk_limits': True,
+                    'max_jerk': 50.0,
+                }
+            },
+        },
+    )
     sent = []
     drive.outputs['limited_command'].connect(sent.append)
     drive.command(1.0, 0.25)
     world.run(400)
     speeds = [twist.linear[0] for twist in sent]
     assert max(speeds) == speeds[-1] == pytest.approx(0.1)
-    jerks = [(c - 2 * b + a) / 2e-6 for a, b, c in zip(
-        speeds, speeds[1:], speeds[2:], strict=False)]
+    jerks = [
+        (c - 2 * b + a) / 2e-6 for a, b, c in zip(speeds, speeds[1:], speeds[2:], strict=False)
+    ]
     assert max(jerks) == pytest.approx(50.0, rel=1e-3)
     assert {twist.angular[2] for twist in sent} == {0.25}
 
 
-@pytest.mark.parametrize(('change', 'text'), [
-    ({'left_wheel': None}, "Couldn't retrieve wheel param 'left_wheel'."),
-    ({'left_wheel': []}, "Wheel param 'left_wheel' is an empty list"),
-    ({'left_wheel': 3}, "Wheel param 'left_wheel' is neither a list of strings nor a string."),
-    ({'left_wheel': ['a', 3]}, "Wheel param 'left_wheel' #1 isn't a string."),
-    ({'left_wheel': ['wheel_left_joint'] * 2}, '#left wheels (2) != #right wheels (1).'),
-    ({'left_wheel': 'nose'}, "nose couldn't be retrieved from model description"),
-    ({'wheel_radius': 0.0}, 'wheel_radius is 0 m; it must be above 0'),
-    ({'wheel_radius': 1e300}, 'wheel_radius is 1e+300 m; it must be below 1e+06'),
-    ({'wheel_separation_multiplier': 0.0},
-     'wheel_separation_multiplier is 0; it must be above 0, and about 1'),
-    ({'wheel_radius_multiplier': -1.0},
-     'wheel_radius_multiplier is -1; it must be above 0, and about 1'),
-    ({'right_wheel': 'wheel_left_joint'}, 'wheel_separation is 0 m; it must be above 0'),
-])
+@pytest.mark.parametrize(
+    ('change', 'text'),
+    [
+        ({'left_wheel': None}, "Couldn't retrieve wheel param 'left_wheel'."),
+        ({'left_wheel': []}, "Wheel param 'left_wheel' is an empty list"),
+        ({'left_wheel': 3}, "Wheel param 'left_wheel' is neither a list of strings nor a string."),
+        ({'left_wheel': ['a', 3]}, "Wheel param 'left_wheel' #1 isn't a string."),
+        ({'left_wheel': ['wheel_left_joint'] * 2}, '#left wheels (2) != #right wheels (1).'),
+        ({'left_wheel': 'nose'}, "nose couldn't be retrieved from model description"),
+        ({'wheel_radius': 0.0}, 'wheel_radius is 0 m; it must be above 0'),
+        ({'wheel_radius': 1e300}, 'wheel_radius is 1e+300 m; it must be below 1e+06'),
+        (
+            {'wheel_separation_multiplier': 0.0},
+            'wheel_separation_multiplier is 0; it must be above 0, and about 1',
+        ),
+        (
+            {'wheel_radius_multiplier': -1.0},
+            'wheel_radius_multiplier is -1; it must be above 0, and about 1',
+        ),
+        ({'right_wheel': 'wheel_left_joint'}, 'wheel_separation is 0 m; it must be above 0'),
+    ],
+)
 def test_bad_parameters_get_a_clear_answer(change, text, world):
     robot = world.spawn(TEXT, name='bot')
     manager = robot.plugin('gazebo_ros_control').manager
@@ -159,9 +182,15 @@ def test_commands_are_refused_while_it_does_not_run_or_if_they_are_not_finite(wo
 
 
 def test_the_states_of_wheels_are_reported_on_request(world):
-    _, drive = spawned(world, PARAMETERS | {
-        'publish_wheel_joint_controller_state': True, 'cmd_vel_timeout': 9.0,
-        'linear': {'x': {'has_velocity_limits': True, 'max_velocity': 0.1}}})
+    _, drive = spawned(
+        world,
+        PARAMETERS
+        | {
+            'publish_wheel_joint_controller_state': True,
+            'cmd_vel_timeout': 9.0,
+            'linear': {'x': {'has_velocity_limits': True, 'max_velocity': 0.1}},
+        },
+    )
     states = []
     drive.outputs['wheel_states'].connect(states.append)
     before = drive.left[0].position
@@ -179,13 +208,33 @@ def test_the_states_of_wheels_are_reported_on_request(world):
 
 
 @pytest.mark.parametrize('absurd', [1e300, -1e300, 1e-300])
-@pytest.mark.parametrize('path', [
-    'publish_rate', 'cmd_vel_timeout', 'velocity_rolling_window_size', 'linear/x/max_velocity',
-    'linear/x/max_acceleration', 'linear/x/max_jerk'])
+@pytest.mark.parametrize(
+    'path',
+    [
+        'publish_rate',
+        'cmd_vel_timeout',
+        'velocity_rolling_window_size',
+        'linear/x/max_velocity',
+        'linear/x/max_acceleration',
+        'linear/x/max_jerk',
+    ],
+)
 def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(path, absurd, world):
-    parameters = PARAMETERS | {path.split('/')[0]: absurd} if '/' not in path else PARAMETERS | {
-        'linear': {'x': {path.rpartition('/')[2]: absurd, 'has_velocity_limits': True,
-                         'has_acceleration_limits': True, 'has_jerk_limits': True}}}
+    parameters = (
+        PARAMETERS | {path.split('/')[0]: absurd}
+        if '/' not in path
+        else PARAMETERS
+        | {
+            'linear': {
+                'x': {
+                    path.rpartition('/')[2]: absurd,
+                    'has_velocity_limits': True,
+                    'has_acceleration_limits': True,
+                    'has_jerk_limits': True,
+                }
+            }
+        }
+    )
     robot, drive = spawned(world, parameters)
     drive.command(1e300, 1e300)
     world.run(100)

@@ -16,7 +16,9 @@ PARAMETERS = {
     'front_steering': ['front_left_steer', 'front_right_steer'],
     'rear_steering': ['rear_left_steer', 'rear_right_steer'],
     'cmd_vel_timeout': 60.0,
-    'pose_covariance_diagonal': [1.0] * 6, 'twist_covariance_diagonal': [1.0] * 6}
+    'pose_covariance_diagonal': [1.0] * 6,
+    'twist_covariance_diagonal': [1.0] * 6,
+}
 SPEED = 0.2
 
 
@@ -67,7 +69,8 @@ def test_a_car_goes_sideways_with_equal_angles(world):
     assert math.atan2(gone[1], gone[0]) == pytest.approx(0.5, abs=0.03)
     assert abs(yaw_of(bot.pose.orientation)) < 0.03
     assert drive.planar.velocity[:2] == pytest.approx(
-        (SPEED * math.cos(0.5), SPEED * math.sin(0.5)), abs=0.01)
+        (SPEED * math.cos(0.5), SPEED * math.sin(0.5)), abs=0.01
+    )
     assert readings[-1][1:] == pytest.approx((0.5, 0.5), abs=1e-3)
     drive.command(SPEED, 0.0)
     world.run(300)
@@ -82,14 +85,21 @@ def test_a_command_expires(world):
     assert bot.joint('front_left_steer').position == pytest.approx(0.0, abs=1e-3)
 
 
-@pytest.mark.parametrize(('change', 'text'), [
-    ({'front_wheel': None}, "Couldn't retrieve wheel param 'front_wheel'."),
-    ({'front_wheel': 'front_left_joint'}, '#front wheels (1) != #rear wheels (2).'),
-    ({'front_steering': ['a'], 'rear_steering': ['b']},
-     '#two steering by axle (left and right) is needed; now : 1 .'),
-    ({'front_wheel': ['nose', 'front_right_joint']},
-     "nose couldn't be retrieved from model description"),
-])
+@pytest.mark.parametrize(
+    ('change', 'text'),
+    [
+        ({'front_wheel': None}, "Couldn't retrieve wheel param 'front_wheel'."),
+        ({'front_wheel': 'front_left_joint'}, '#front wheels (1) != #rear wheels (2).'),
+        (
+            {'front_steering': ['a'], 'rear_steering': ['b']},
+            '#two steering by axle (left and right) is needed; now : 1 .',
+        ),
+        (
+            {'front_wheel': ['nose', 'front_right_joint']},
+            "nose couldn't be retrieved from model description",
+        ),
+    ],
+)
 def test_bad_parameters_get_a_clear_answer(change, text, world):
     with pytest.raises(ControllerError) as error:
         spawned(world, PARAMETERS | change)

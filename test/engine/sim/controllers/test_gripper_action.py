@@ -38,7 +38,10 @@ def test_a_goal_succeeds_within_its_tolerance(interface, world):
     world.run(1000)
     assert done == [goal]
     assert (goal.status, goal.result.reached_goal, goal.result.stalled) == (
-        'succeeded', True, False)
+        'succeeded',
+        True,
+        False,
+    )
     assert goal.result.position == pytest.approx(0.05, abs=0.01)
 
 
@@ -46,8 +49,7 @@ def test_a_goal_is_aborted_where_the_joint_stalls(world):
     grip = started(world)
     goal = grip.follow(3.0, 20.0)  # beyond the stop at 2.5
     world.run(3000)
-    assert (goal.status, goal.result.reached_goal, goal.result.stalled) == (
-        'aborted', False, True)
+    assert (goal.status, goal.result.reached_goal, goal.result.stalled) == ('aborted', False, True)
     assert goal.result.effort == pytest.approx(20.0)
     assert goal.result.position == pytest.approx(2.5, abs=0.01)
 
@@ -66,11 +68,17 @@ def test_a_new_goal_a_cancel_and_a_stop_cancel(world):
     assert grip.follow(0.4, 40.0).status == 'rejected'
 
 
-@pytest.mark.parametrize(('change', 'text'), [
-    ({'joint': None}, 'Could not find joint name on param server'),
-    ({'joint': 'nose'}, "Could not find joint 'nose' in URDF model."),
-    ({'joint': 'fixed'}, "Could not find joint 'fixed' in "
-                         "'hardware_interface::EffortJointInterface'.")])
+@pytest.mark.parametrize(
+    ('change', 'text'),
+    [
+        ({'joint': None}, 'Could not find joint name on param server'),
+        ({'joint': 'nose'}, "Could not find joint 'nose' in URDF model."),
+        (
+            {'joint': 'fixed'},
+            "Could not find joint 'fixed' in 'hardware_interface::EffortJointInterface'.",
+        ),
+    ],
+)
 def test_bad_parameters_get_upstreams_answer(change, text, world):
     with pytest.raises(ControllerError) as error:
         started(world, parameters=PARAMETERS | change)

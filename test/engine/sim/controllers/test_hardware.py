@@ -47,30 +47,35 @@ def spawned(world, change):
 def test_the_namespace_is_the_models_name_unless_given(world):
     without = world.spawn(
         arm(change=lambda text: text.replace('<robotNamespace>/arm</robotNamespace>', '')),
-        name='bot')
+        name='bot',
+    )
     assert without.plugin('gazebo_ros_control').manager.namespace == 'bot'
     assert spawned(world, lambda text: text).manager.namespace == '/arm'
 
 
-@pytest.mark.parametrize(('written', 'own'), [
-    ('/', '/c'), ('/arm', '/arm/c'), ('arm', 'arm/c'), ('', '/c')])
+@pytest.mark.parametrize(
+    ('written', 'own'), [('/', '/c'), ('/arm', '/arm/c'), ('arm', 'arm/c'), ('', '/c')]
+)
 def test_a_controller_is_in_the_robots_namespace(written, own, world):
     plugin = spawned(world, lambda text: text.replace('>/arm<', f'>{written}<'))
     plugin.manager.load('c', TYPES[EFFORT], BOTH)
     assert plugin.manager.controller('c').namespace == own
 
 
-@pytest.mark.parametrize(('period', 'text'), [
-    ('0.0001', '(0.000100000 s) is faster than the gazebo simulation period (0.001000000 s)'),
-    ('0.01', '(0.010000000 s) is slower than the gazebo simulation period (0.001000000 s)')])
+@pytest.mark.parametrize(
+    ('period', 'text'),
+    [
+        ('0.0001', '(0.000100000 s) is faster than the gazebo simulation period (0.001000000 s)'),
+        ('0.01', '(0.010000000 s) is slower than the gazebo simulation period (0.001000000 s)'),
+    ],
+)
 def test_another_period_is_logged(period, text, world, caplog):
     spawned(world, plugin_tags(f'<controlPeriod>{period}</controlPeriod>'))
     assert text in caplog.text
 
 
 def test_controllers_run_once_per_period(world):
-    model, manager = spawn_arm(
-        world, change=plugin_tags('<controlPeriod>0.01</controlPeriod>'))
+    model, manager = spawn_arm(world, change=plugin_tags('<controlPeriod>0.01</controlPeriod>'))
     manager.load('arm', TYPES[EFFORT], BOTH)
     manager.switch(['arm'])
     periods = []
@@ -92,8 +97,9 @@ def test_a_period_that_is_none_is_refused(text, world, caplog):
 
 
 def test_a_transmission_of_an_unknown_joint_leaves_the_plugin_idle(world, caplog):
-    plugin = spawned(world, lambda text: text.replace(
-        '<joint name="joint2"><h', '<joint name="x"><h'))
+    plugin = spawned(
+        world, lambda text: text.replace('<joint name="joint2"><h', '<joint name="x"><h')
+    )
     world.run(10)
     assert 'This robot has a joint named "x" which is not in the gazebo model.' in caplog.text
     with pytest.raises(ControllerError, match='is not active; the log says why'):
@@ -102,36 +108,56 @@ def test_a_transmission_of_an_unknown_joint_leaves_the_plugin_idle(world, caplog
 
 def test_an_unknown_interface_leaves_the_plugin_idle(world):
     plugin = spawned(world, lambda text: text.replace('EffortJoint', 'MagicJoint'))
-    with pytest.raises(PluginError, match="No matching hardware interface found for "
-                                          "'hardware_interface/MagicJointInterface' while loading "
-                                          'interfaces for joint1'):
+    with pytest.raises(
+        PluginError,
+        match='No matching hardware interface found for '
+        "'hardware_interface/MagicJointInterface' while loading "
+        'interfaces for joint1',
+    ):
         plugin.configure()
 
 
 def test_a_transmission_of_two_joints_is_named_and_the_others_work(world, caplog):
     interface = f'<hardwareInterface>{EFFORT}</hardwareInterface></joint>'
-    extra = ('<transmission name="both">'
-             '<type>transmission_interface/DifferentialTransmission</type>'
-             f'<joint name="joint1">{interface}<joint name="joint2">{interface}'
-             '<actuator name="a"/></transmission></robot>')
+    extra = (
+        '<transmission name="both">'
+        '<type>transmission_interface/DifferentialTransmission</type>'
+        f'<joint name="joint1">{interface}<joint name="joint2">{interface}'
+        '<actuator name="a"/></transmission></robot>'
+    )
     plugin = spawned(world, lambda text: text.replace('</robot>', extra))
     assert list(plugin.manager.robot.joints) == ['joint1', 'joint2']
-    assert ('Transmission both has more than one joint.' in caplog.text
-            and 'transmission_interface/DifferentialTransmission is not simulated' in caplog.text)
+    assert (
+        'Transmission both has more than one joint.' in caplog.text
+        and 'transmission_interface/DifferentialTransmission is not simulated' in caplog.text
+    )
 
 
-@pytest.mark.parametrize(('old', 'new', 'text'), [
-    ('<transmission name="joint2_trans">', '<transmission>',
-     'No name attribute specified for transmission.'),
-    ('<transmission name="joint2_trans"><type>transmission_interface/SimpleTransmission</type>',
-     '<transmission name="joint2_trans">',
-     "No type element found in transmission 'joint2_trans'."),
-    ('<actuator name="joint2_motor">', '<actuator>',
-     "Failed to load actuators for transmission 'joint2_trans'."),
-    (f'<joint name="joint2"><hardwareInterface>{EFFORT}</hardwareInterface></joint>',
-     '<joint name="joint2"/>',
-     "No valid hardware interface element found in joint 'joint2'."),
-])
+@pytest.mark.parametrize(
+    ('old', 'new', 'text'),
+    [
+        (
+            '<transmission name="joint2_trans">',
+            '<transmission>',
+            'No name attribute specified for transmission.',
+        ),
+        (
+            '<transmission name="joint2_trans"><type>transmission_interface/SimpleTransmission</type>',
+            '<transmission name="joint2_trans">',
+            "No type element found in transmission 'joint2_trans'.",
+        ),
+        (
+            '<actuator name="joint2_motor">',
+            '<actuator>',
+            "Failed to load actuators for transmission 'joint2_trans'.",
+        ),
+        (
+            f'<joint name="joint2"><hardwareInterface>{EFFORT}</hardwareInterface></joint>',
+            '<joint name="joint2"/>',
+            "No valid hardware interface element found in joint 'joint2'.",
+        ),
+    ],
+)
 def test_an_incomplete_transmission_is_skipped_with_upstreams_words(old, new, text, world, caplog):
     plugin = spawned(world, lambda urdf: urdf.replace(old, new))
     assert list(plugin.manager.robot.joints) == ['joint1']
@@ -141,14 +167,20 @@ def test_an_incomplete_transmission_is_skipped_with_upstreams_words(old, new, te
 def test_interfaces_without_a_prefix_work_and_are_named(world, caplog):
     plugin = spawned(world, lambda text: text.replace('hardware_interface/', ''))
     assert list(plugin.manager.robot.joints) == ['joint1', 'joint2']
-    assert ("Deprecated syntax, please prepend 'hardware_interface/' to 'EffortJointInterface' "
-            "within the <hardwareInterface> tag in joint 'joint1'.") in caplog.messages
+    assert (
+        "Deprecated syntax, please prepend 'hardware_interface/' to 'EffortJointInterface' "
+        "within the <hardwareInterface> tag in joint 'joint1'."
+    ) in caplog.messages
 
 
 def test_missing_gains_are_an_error_as_recorded(world, caplog):
     spawn_arm(world, POSITION)
-    assert caplog.messages.count('No p gain specified for pid.  Namespace: '
-                                 '/arm/gazebo_ros_control/pid_gains/joint1') == 1
+    assert (
+        caplog.messages.count(
+            'No p gain specified for pid.  Namespace: /arm/gazebo_ros_control/pid_gains/joint1'
+        )
+        == 1
+    )
 
 
 def test_an_effort_is_clamped_to_the_limit_and_vanishes_beyond_a_stop(world):
@@ -161,9 +193,20 @@ def test_an_effort_is_clamped_to_the_limit_and_vanishes_beyond_a_stop(world):
 
 
 def test_parameters_replace_the_limits_of_the_urdf(world):
-    model = started(world, POSITION, [3.0, 0.0], limits={'joint1': {
-        'has_position_limits': True, 'min_position': -0.2, 'max_position': 0.2,
-        'has_velocity_limits': True, 'max_velocity': 1.0}})
+    model = started(
+        world,
+        POSITION,
+        [3.0, 0.0],
+        limits={
+            'joint1': {
+                'has_position_limits': True,
+                'min_position': -0.2,
+                'max_position': 0.2,
+                'has_velocity_limits': True,
+                'max_velocity': 1.0,
+            }
+        },
+    )
     world.run(100)
     assert model.joint('joint1').position == pytest.approx(0.1, abs=STILL)
     world.run(200)
@@ -171,13 +214,20 @@ def test_parameters_replace_the_limits_of_the_urdf(world):
 
 
 def test_soft_limits_slow_a_joint_down(world):
-    soft = ('effort="100" velocity="10"/><safety_controller soft_lower_limit="-0.5" '
-            'soft_upper_limit="0.5" k_position="10" k_velocity="10"/>')
-    model = started(world, POSITION, [2.0, 0.0], change=lambda text: text.replace(
-        'effort="100" velocity="10"/>', soft))
+    soft = (
+        'effort="100" velocity="10"/><safety_controller soft_lower_limit="-0.5" '
+        'soft_upper_limit="0.5" k_position="10" k_velocity="10"/>'
+    )
+    model = started(
+        world,
+        POSITION,
+        [2.0, 0.0],
+        change=lambda text: text.replace('effort="100" velocity="10"/>', soft),
+    )
     world.run(100)  # x' = 10 (0.5 - x)
     assert model.joint('joint1').position == pytest.approx(
-        0.5 * (1.0 - math.exp(-1.0)), abs=5 * STILL)
+        0.5 * (1.0 - math.exp(-1.0)), abs=5 * STILL
+    )
     world.run(2000)
     assert model.joint('joint1').position == pytest.approx(0.5, abs=STILL)
 
@@ -238,11 +288,17 @@ def test_a_limp_robot_costs_no_steps(world):
 
 
 def test_a_mimic_joint_follows_its_leader(world):
-    mimic = ('effort="60" velocity="6"/><mimic joint="joint1" multiplier="-0.5" offset="0.1"/>')
+    mimic = 'effort="60" velocity="6"/><mimic joint="joint1" multiplier="-0.5" offset="0.1"/>'
     cut = '<transmission name="joint2_trans">'
-    model = world.spawn(arm(POSITION, lambda text: text.replace(
-        'effort="60" velocity="6"/>', mimic).replace(
-            text[text.index(cut):text.index('<gazebo>')], '')), name='arm')
+    model = world.spawn(
+        arm(
+            POSITION,
+            lambda text: text.replace('effort="60" velocity="6"/>', mimic).replace(
+                text[text.index(cut) : text.index('<gazebo>')], ''
+            ),
+        ),
+        name='arm',
+    )
     manager = model.plugin('gazebo_ros_control').manager
     manager.load('arm', 'position_controllers/JointPositionController', {'joint': 'joint1'})
     manager.switch(['arm'])
@@ -252,13 +308,17 @@ def test_a_mimic_joint_follows_its_leader(world):
         assert model.joint('joint2').position == pytest.approx(-0.5 * wanted + 0.1, abs=STILL)
 
 
-@pytest.mark.parametrize(('leader', 'why'), [
-    ('joint2', 'is itself'), ('nose', 'the model does not have')])
+@pytest.mark.parametrize(
+    ('leader', 'why'), [('joint2', 'is itself'), ('nose', 'the model does not have')]
+)
 def test_a_mimic_joint_without_another_leader_is_passive(leader, why, world, caplog):
     cut = '<transmission name="joint2_trans">'
-    plugin = spawned(world, lambda text: text.replace(
-        'effort="60" velocity="6"/>', f'effort="60" velocity="6"/><mimic joint="{leader}"/>'
-    ).replace(text[text.index(cut):text.index('<gazebo>')], ''))
+    plugin = spawned(
+        world,
+        lambda text: text.replace(
+            'effort="60" velocity="6"/>', f'effort="60" velocity="6"/><mimic joint="{leader}"/>'
+        ).replace(text[text.index(cut) : text.index('<gazebo>')], ''),
+    )
     world.run(50)
     assert f"joint 'joint2' mimics '{leader}', which {why}; it is passive" in caplog.messages
     assert plugin.due > world.clock.steps + 1000
@@ -266,13 +326,17 @@ def test_a_mimic_joint_without_another_leader_is_passive(leader, why, world, cap
 
 @pytest.mark.parametrize('absurd', ['0', '1e300', '-1e300', '1e-300', 'nan'])
 def test_absurd_limits_and_mimics_do_not_make_a_robot_diverge(absurd, world):
-    text = arm(POSITION).replace('effort="100" velocity="10"',
-                                 f'effort="{absurd}" velocity="{absurd}"')
-    control = load_robot_control(text.replace(
-        '<dynamics damping="0.5"/>',
-        f'<dynamics damping="0.5"/><mimic joint="joint1" multiplier="{absurd}"/>'
-        f'<safety_controller soft_lower_limit="{absurd}" soft_upper_limit="{absurd}" '
-        f'k_position="{absurd}" k_velocity="{absurd}"/>'))
+    text = arm(POSITION).replace(
+        'effort="100" velocity="10"', f'effort="{absurd}" velocity="{absurd}"'
+    )
+    control = load_robot_control(
+        text.replace(
+            '<dynamics damping="0.5"/>',
+            f'<dynamics damping="0.5"/><mimic joint="joint1" multiplier="{absurd}"/>'
+            f'<safety_controller soft_lower_limit="{absurd}" soft_upper_limit="{absurd}" '
+            f'k_position="{absurd}" k_velocity="{absurd}"/>',
+        )
+    )
     model = world.spawn(arm(POSITION), name='arm')
     plugin = model.plugin('gazebo_ros_control')
     plugin.configure(control)

@@ -37,15 +37,22 @@ def package(monkeypatch, tmp_path):
     folder.mkdir()
     (folder / '__init__.py').touch()
     yield folder
-    for name in [name for name in sys.modules
-                 if name.partition('.')[0] in ('my_robot', 'rosbots_simulator')]:
+    for name in [
+        name for name in sys.modules if name.partition('.')[0] in ('my_robot', 'rosbots_simulator')
+    ]:
         del sys.modules[name]
 
 
 def test_the_controller_is_short_and_lint_clean():
     assert CODE.count('\n') < MOST_LINES
-    checked = subprocess.run(['ruff', 'check', '--stdin-filename', 'controllers.py', '-'],
-                             input=CODE, cwd=ROOT, capture_output=True, text=True, check=False)
+    checked = subprocess.run(
+        ['ruff', 'check', '--stdin-filename', 'controllers.py', '-'],
+        input=CODE,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 
@@ -53,7 +60,8 @@ def test_the_controller_is_short_and_lint_clean():
 def test_the_controller_is_found_by_its_type_and_waves(own, package, world):
     """It may import the simulator by either name: a server has the second one."""
     (package / 'controllers.py').write_text(
-        CODE.replace('rosbots_description', own), encoding='utf-8')
+        CODE.replace('rosbots_description', own), encoding='utf-8'
+    )
     model, manager = spawn_arm(world)
     parameters = WAVE['wave'] | {'joint': 'joint1'}
     manager.load('wave', parameters['type'], parameters)
@@ -74,15 +82,27 @@ def test_the_controller_is_found_by_its_type_and_waves(own, package, world):
 def test_a_module_that_fails_is_named_and_the_world_lives_on(package, world):
     (package / 'controllers.py').write_text('raise RuntimeError("no such motor")\n')
     _, manager = spawn_arm(world)
-    with pytest.raises(ControllerError, match=r"Could not load class 'my_robot/Wave': RuntimeError "
-                                              r'in my_robot\.controllers: no such motor'):
+    with pytest.raises(
+        ControllerError,
+        match=r"Could not load class 'my_robot/Wave': RuntimeError "
+        r'in my_robot\.controllers: no such motor',
+    ):
         manager.load('wave', 'my_robot/Wave', {})
     world.run(10)
 
 
-@pytest.mark.parametrize('name', [
-    'my_robot/Wave', 'json/Decoder', 'no.such/Type', '../etc/passwd', '/', 'a',
-    'rosbots_description/X'])
+@pytest.mark.parametrize(
+    'name',
+    [
+        'my_robot/Wave',
+        'json/Decoder',
+        'no.such/Type',
+        '../etc/passwd',
+        '/',
+        'a',
+        'rosbots_description/X',
+    ],
+)
 def test_nothing_is_imported_for_a_package_without_controllers(name, package, world):
     _, manager = spawn_arm(world)
     before = set(sys.modules)

@@ -42,9 +42,14 @@ def goal(*points, names=NAMES, **more):
 
 
 def trajectory(*points, names=NAMES, start_ns=0):
-    return Trajectory(names, [
-        TrajectoryPoint(positions, (0.0,) * len(positions), time_from_start=time)
-        for time, positions in points], start_ns)
+    return Trajectory(
+        names,
+        [
+            TrajectoryPoint(positions, (0.0,) * len(positions), time_from_start=time)
+            for time, positions in points
+        ],
+        start_ns,
+    )
 
 
 @pytest.mark.parametrize('name', ['jtc_effort', 'jtc_position'])
@@ -65,13 +70,18 @@ def test_the_recorded_goals_have_the_recorded_path_and_result(name, world):
             # The path that is left to a jump is a matter of steps: joint and number differ.
             assert followed.error_string.split(' error ')[0].endswith(' path')
             assert abs(float(followed.error_string.rpartition(' ')[2])) == pytest.approx(
-                0.51, abs=0.03)
+                0.51, abs=0.03
+            )
             return
         there = [row for row in scene['trace'] if begin <= row[0] <= begin + 2.4]
         # When the recorded goal was taken is known to the period of the action server only.
-        off = min(range(12), key=lambda shift: sum(abs(
-            row[1] - sampled(rows, max(0.0, row[0] - begin - shift / 1000.0), 0))
-            for row in there))
+        off = min(
+            range(12),
+            key=lambda shift: sum(
+                abs(row[1] - sampled(rows, max(0.0, row[0] - begin - shift / 1000.0), 0))
+                for row in there
+            ),
+        )
         for row in there:
             time = max(0.0, row[0] - begin - off / 1000.0)
             for joint in (0, 1):
@@ -80,10 +90,15 @@ def test_the_recorded_goals_have_the_recorded_path_and_result(name, world):
 
 @pytest.mark.parametrize('interface', [EFFORT, POSITION, VELOCITY])
 def test_each_interface_reaches_the_goal(interface, world):
-    gains = {name: {'p': 300.0, 'd': 20.0, 'i': 10.0, 'i_clamp': 10.0} if interface == EFFORT
-             else {'p': 20.0} for name in NAMES}
-    _, arm = started(world, interface, PARAMETERS | {
-        'gains': gains, 'velocity_ff': dict.fromkeys(NAMES, 1.0)})
+    gains = {
+        name: {'p': 300.0, 'd': 20.0, 'i': 10.0, 'i_clamp': 10.0}
+        if interface == EFFORT
+        else {'p': 20.0}
+        for name in NAMES
+    }
+    _, arm = started(
+        world, interface, PARAMETERS | {'gains': gains, 'velocity_ff': dict.fromkeys(NAMES, 1.0)}
+    )
     followed = arm.follow(goal((0.5, (0.3, -0.2)), (1.0, (0.6, 0.2))))
     assert followed.is_active
     world.run(1700)
@@ -98,15 +113,13 @@ def test_splines_follow_the_derivatives_that_are_given(world):
     arm.play(Trajectory(NAMES, []))
     arm.play(Trajectory(NAMES, [TrajectoryPoint((1.0, -1.0), REST, time_from_start=1.0)]))
     cubic = arm.query(world.clock.now_ns + 250_000_000)
-    assert cubic.positions[0] == pytest.approx(3 * 0.25 ** 2 - 2 * 0.25 ** 3)
-    assert cubic.velocities[0] == pytest.approx(6 * 0.25 - 6 * 0.25 ** 2)
+    assert cubic.positions[0] == pytest.approx(3 * 0.25**2 - 2 * 0.25**3)
+    assert cubic.velocities[0] == pytest.approx(6 * 0.25 - 6 * 0.25**2)
     arm.play(Trajectory(NAMES, []))
     arm.play(Trajectory(NAMES, [TrajectoryPoint((1.0, -1.0), REST, REST, 1.0)]))
     quintic = arm.query(world.clock.now_ns + 250_000_000)
-    assert quintic.positions[0] == pytest.approx(
-        10 * 0.25 ** 3 - 15 * 0.25 ** 4 + 6 * 0.25 ** 5)
-    assert arm.query(world.clock.now_ns + 2_000_000_000) == TrajectoryPoint(
-        (1.0, -1.0), REST, REST)
+    assert quintic.positions[0] == pytest.approx(10 * 0.25**3 - 15 * 0.25**4 + 6 * 0.25**5)
+    assert arm.query(world.clock.now_ns + 2_000_000_000) == TrajectoryPoint((1.0, -1.0), REST, REST)
 
 
 def test_a_new_trajectory_replaces_the_rest_without_a_jump(world):
@@ -178,11 +191,20 @@ def test_a_stopped_controller_cancels_its_goal_and_rejects_others(world):
 
 
 def test_an_end_out_of_tolerance_aborts_after_the_goal_time(world):
-    _, arm = started(world, EFFORT, RECORDED['jtc_effort']['controller'] | {
-        'gains': {name: {'p': 100.0, 'd': 20.0} for name in NAMES}})
-    followed = arm.follow(goal(
-        (0.5, (0.8, 0.0)), goal_tolerances={'joint1': Tolerance(0.001)},
-        path_tolerances={name: Tolerance(-1.0) for name in NAMES}, goal_time_tolerance=0.3))
+    _, arm = started(
+        world,
+        EFFORT,
+        RECORDED['jtc_effort']['controller']
+        | {'gains': {name: {'p': 100.0, 'd': 20.0} for name in NAMES}},
+    )
+    followed = arm.follow(
+        goal(
+            (0.5, (0.8, 0.0)),
+            goal_tolerances={'joint1': Tolerance(0.001)},
+            path_tolerances={name: Tolerance(-1.0) for name in NAMES},
+            goal_time_tolerance=0.3,
+        )
+    )
     world.run(780)
     assert followed.is_active
     world.run(40)
@@ -190,33 +212,53 @@ def test_an_end_out_of_tolerance_aborts_after_the_goal_time(world):
     assert followed.error_string.startswith('joint1 goal error -0.0')
 
 
-@pytest.mark.parametrize(('bad', 'code', 'text'), [
-    (goal((1.0, (1.0,)), names=('joint1',)), -2, ''),
-    (goal((1.0, (1.0, 0.0)), names=('joint1', 'nose')), -2, ''),
-    (goal((1.0, (1.0, 0.0)), (1.0, (0.5, 0.0))), -1,
-     'Trajectory message contains waypoints that are not strictly increasing in time.'),
-    (goal((1.0, (math.nan, 0.0))), -1,
-     'Trajectory message contains a number that is not finite.'),
-    (goal((math.inf, (0.0, 0.0))), -1,
-     'Trajectory message contains a number that is not finite.'),
-    (goal((1e200, (0.0, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
-    (goal((1.0, (1e300, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
-    (goal((1.0, (1.0, 0.0, 0.0))), -1,
-     'Size mismatch in trajectory point position, velocity or acceleration data.'),
-    (goal((1.0, ())), -1,
-     "Quintic spline segment can't be constructed: Endpoint positions can't be empty."),
-    (TrajectoryGoal(trajectory((0.1, (1.0, 0.0)), (0.2, (0.5, 0.0)), start_ns=100_000_000)), -1,
-     'Dropping all 2 trajectory point(s), as they occur before the current time.\n'
-     'Last point is 0.701000s in the past.'),
-])
+@pytest.mark.parametrize(
+    ('bad', 'code', 'text'),
+    [
+        (goal((1.0, (1.0,)), names=('joint1',)), -2, ''),
+        (goal((1.0, (1.0, 0.0)), names=('joint1', 'nose')), -2, ''),
+        (
+            goal((1.0, (1.0, 0.0)), (1.0, (0.5, 0.0))),
+            -1,
+            'Trajectory message contains waypoints that are not strictly increasing in time.',
+        ),
+        (
+            goal((1.0, (math.nan, 0.0))),
+            -1,
+            'Trajectory message contains a number that is not finite.',
+        ),
+        (
+            goal((math.inf, (0.0, 0.0))),
+            -1,
+            'Trajectory message contains a number that is not finite.',
+        ),
+        (goal((1e200, (0.0, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
+        (goal((1.0, (1e300, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
+        (
+            goal((1.0, (1.0, 0.0, 0.0))),
+            -1,
+            'Size mismatch in trajectory point position, velocity or acceleration data.',
+        ),
+        (
+            goal((1.0, ())),
+            -1,
+            "Quintic spline segment can't be constructed: Endpoint positions can't be empty.",
+        ),
+        (
+            TrajectoryGoal(trajectory((0.1, (1.0, 0.0)), (0.2, (0.5, 0.0)), start_ns=100_000_000)),
+            -1,
+            'Dropping all 2 trajectory point(s), as they occur before the current time.\n'
+            'Last point is 0.701000s in the past.',
+        ),
+    ],
+)
 def test_a_bad_goal_is_rejected_and_the_joints_go_on(bad, code, text, world):
     _, arm = started(world)
     world.run(500)
     arm.command((0.4, 0.2), seconds=0.5)
     world.run(500)
     rejected = arm.follow(bad)
-    assert (rejected.status, rejected.error_code, rejected.error_string) == (
-        'rejected', code, text)
+    assert (rejected.status, rejected.error_code, rejected.error_string) == ('rejected', code, text)
     world.run(200)
     assert [joint.position for joint in arm.joints] == pytest.approx([0.4, 0.2], abs=1e-3)
 
@@ -260,16 +302,22 @@ def test_states_and_feedback_come_at_their_rates(world):
     last = feedback[-1]
     assert last.joint_names == NAMES
     assert last.error.positions[0] == pytest.approx(
-        last.desired.positions[0] - last.actual.positions[0])
+        last.desired.positions[0] - last.actual.positions[0]
+    )
     assert last.actual.time_from_start == pytest.approx(0.9, abs=0.01)
 
 
-@pytest.mark.parametrize(('change', 'text'), [
-    ({'joints': None}, "Could not find 'joints' parameter (namespace: /arm/arm)."),
-    ({'joints': ['joint1', 'nose']}, "Could not find joint 'nose' in URDF model."),
-    ({'joints': ['fixed']}, "Could not find joint 'fixed' in "
-                            "'hardware_interface::PositionJointInterface'."),
-])
+@pytest.mark.parametrize(
+    ('change', 'text'),
+    [
+        ({'joints': None}, "Could not find 'joints' parameter (namespace: /arm/arm)."),
+        ({'joints': ['joint1', 'nose']}, "Could not find joint 'nose' in URDF model."),
+        (
+            {'joints': ['fixed']},
+            "Could not find joint 'fixed' in 'hardware_interface::PositionJointInterface'.",
+        ),
+    ],
+)
 def test_bad_parameters_get_upstreams_answer(change, text, world):
     with pytest.raises(ControllerError) as error:
         started(world, parameters=PARAMETERS | change)
@@ -303,4 +351,5 @@ def test_an_interface_that_gazebo_lacks_gets_upstreams_answer(kind, world):
     assert error.value.sentences == (
         f"This controller requires a hardware interface of type 'hardware_interface::{name}"
         "JointInterface'. Make sure this is registered in the hardware_interface::RobotHW class.",
-        "Initializing controller 'arm' failed")
+        "Initializing controller 'arm' failed",
+    )

@@ -39,7 +39,8 @@ def test_a_group_follows_its_command(world):
     model.controller('arm').command([0.5, -0.3])
     world.run(LATER)
     assert [joint.position for joint in model.joints.values()] == pytest.approx(
-        [0.5, -0.3], abs=1e-3)
+        [0.5, -0.3], abs=1e-3
+    )
 
 
 def test_states_are_listed_as_upstream(world):
@@ -49,7 +50,8 @@ def test_states_are_listed_as_upstream(world):
     claimed = ((f'hardware_interface::{POSITION.rpartition("/")[2]}', ('joint1', 'joint2')),)
     assert manager.list() == [
         ('arm', 'initialized', GROUP, claimed),
-        ('states', 'initialized', STATES, (('hardware_interface::JointStateInterface', ()),))]
+        ('states', 'initialized', STATES, (('hardware_interface::JointStateInterface', ()),)),
+    ]
     manager.switch(['arm'])
     assert manager.list()[0].state == 'running'
     manager.switch([], ['arm'])
@@ -58,12 +60,23 @@ def test_states_are_listed_as_upstream(world):
 
 def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
     model, manager = spawn_arm(world)
-    manager.load('states', STATES, {'publish_rate': 100, 'extra_joints': [
-        {'name': 'extra', 'position': 0.25}, {'name': 'joint1'}, {'position': 1.0}]})
+    manager.load(
+        'states',
+        STATES,
+        {
+            'publish_rate': 100,
+            'extra_joints': [
+                {'name': 'extra', 'position': 0.25},
+                {'name': 'joint1'},
+                {'position': 1.0},
+            ],
+        },
+    )
     manager.switch(['states'])
     came = []
     model.controller('states').outputs['joint_states'].connect(
-        lambda reading: came.append((world.clock.steps, reading)))
+        lambda reading: came.append((world.clock.steps, reading))
+    )
     world.run(100)
     steps = [step for step, _ in came]
     later = steps[1:]  # as upstream, the first one comes at once
@@ -73,45 +86,110 @@ def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
     assert came[0][1].positions[2] == 0.25
 
 
-@pytest.mark.parametrize(('type_name', 'parameters', 'sentences'), [
-    (PID, GAINS | {'joint': 'nose'}, (
-        "Exception thrown while initializing controller 'c'.\nCould not find resource 'nose' in "
-        "'hardware_interface::EffortJointInterface'.",
-        "Initializing controller 'c' failed")),
-    (PID, {'joint': 'joint1'}, (
-        'No p gain specified for pid.  Namespace: /arm/c/pid',
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    (PID, {'joint': 'joint1', 'pid': {'p': 'much'}}, (
-        'No p gain specified for pid.  Namespace: /arm/c/pid',
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    (PID, {}, (
-        'No joint given (namespace: /arm/c)',
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    (ONE, {'joint': 'joint1'}, (
-        "Exception thrown while initializing controller 'c'.\nCould not find resource 'joint1' in "
-        "'hardware_interface::PositionJointInterface'.",
-        "Initializing controller 'c' failed")),
-    ('effort_controllers/JointGroupEffortController', {'joints': []}, (
-        'List of joint names is empty.',
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    ('effort_controllers/JointGroupEffortController', {'joints': 'joint1'}, (
-        "Failed to getParam 'joints' (namespace: /arm/c).",
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    ('effort_controllers/JointGroupEffortController', {'joints': ['joint1', 'nose']}, (
-        "Exception thrown: Could not find resource 'nose' in "
-        "'hardware_interface::EffortJointInterface'.",
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    (STATES, {}, (
-        "Parameter 'publish_rate' not set",
-        'Failed to initialize the controller', "Initializing controller 'c' failed")),
-    ('my/Controller', {}, (
-        "Could not load controller 'c' because controller type 'my/Controller' does not exist.",
-        "Use 'rosservice call controller_manager/list_controller_types' to get the available "
-        'types')),
-    ('', {}, (
-        "Could not load controller 'c' because the type was not specified. Did you load the "
-        "controller configuration on the parameter server (namespace: '/arm/c')?",)),
-])
+@pytest.mark.parametrize(
+    ('type_name', 'parameters', 'sentences'),
+    [
+        (
+            PID,
+            GAINS | {'joint': 'nose'},
+            (
+                "Exception thrown while initializing controller 'c'.\nCould not find resource 'nose' in "
+                "'hardware_interface::EffortJointInterface'.",
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            PID,
+            {'joint': 'joint1'},
+            (
+                'No p gain specified for pid.  Namespace: /arm/c/pid',
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            PID,
+            {'joint': 'joint1', 'pid': {'p': 'much'}},
+            (
+                'No p gain specified for pid.  Namespace: /arm/c/pid',
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            PID,
+            {},
+            (
+                'No joint given (namespace: /arm/c)',
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            ONE,
+            {'joint': 'joint1'},
+            (
+                "Exception thrown while initializing controller 'c'.\nCould not find resource 'joint1' in "
+                "'hardware_interface::PositionJointInterface'.",
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            'effort_controllers/JointGroupEffortController',
+            {'joints': []},
+            (
+                'List of joint names is empty.',
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            'effort_controllers/JointGroupEffortController',
+            {'joints': 'joint1'},
+            (
+                "Failed to getParam 'joints' (namespace: /arm/c).",
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            'effort_controllers/JointGroupEffortController',
+            {'joints': ['joint1', 'nose']},
+            (
+                "Exception thrown: Could not find resource 'nose' in "
+                "'hardware_interface::EffortJointInterface'.",
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            STATES,
+            {},
+            (
+                "Parameter 'publish_rate' not set",
+                'Failed to initialize the controller',
+                "Initializing controller 'c' failed",
+            ),
+        ),
+        (
+            'my/Controller',
+            {},
+            (
+                "Could not load controller 'c' because controller type 'my/Controller' does not exist.",
+                "Use 'rosservice call controller_manager/list_controller_types' to get the available "
+                'types',
+            ),
+        ),
+        (
+            '',
+            {},
+            (
+                "Could not load controller 'c' because the type was not specified. Did you load the "
+                "controller configuration on the parameter server (namespace: '/arm/c')?",
+            ),
+        ),
+    ],
+)
 def test_a_controller_that_cannot_be_loaded_gets_upstreams_answer(
     type_name, parameters, sentences, world
 ):
@@ -125,14 +203,17 @@ def test_names_are_unique_and_running_controllers_stay(world):
     _, manager = spawn_arm(world)
     manager.load('c', PID, GAINS)
     assert refused(manager.load, 'c', PID, GAINS) == (
-        "A controller named 'c' was already loaded inside the controller manager",)
+        "A controller named 'c' was already loaded inside the controller manager",
+    )
     manager.switch(['c'])
     assert refused(manager.unload, 'c') == (
-        "Could not unload controller with name 'c' because it is still running",)
+        "Could not unload controller with name 'c' because it is still running",
+    )
     manager.switch([], ['c'])
     manager.unload('c')
     assert refused(manager.unload, 'c') == (
-        "Could not unload controller with name 'c' because no controller with this name exists",)
+        "Could not unload controller with name 'c' because no controller with this name exists",
+    )
 
 
 def test_a_joint_has_one_running_controller(world):
@@ -142,7 +223,8 @@ def test_a_joint_has_one_running_controller(world):
     manager.switch(['arm'])
     assert refused(manager.switch, ['one']) == (
         'Resource conflict on [joint1].  Controllers = [arm, one, ]',
-        'Could not switch controllers, due to resource conflict')
+        'Could not switch controllers, due to resource conflict',
+    )
     assert [one.state for one in manager.list()] == ['running', 'initialized']
     manager.switch(['one'], ['arm'])
     assert [one.state for one in manager.list()] == ['stopped', 'running']
@@ -152,15 +234,19 @@ def test_strictness_is_upstreams(world):
     _, manager = spawn_arm(world)
     manager.load('c', PID, GAINS)
     assert refused(manager.switch, ['d']) == (
-        "Could not start controller with name 'd' because no controller with this name exists",)
+        "Could not start controller with name 'd' because no controller with this name exists",
+    )
     assert refused(manager.switch, [], ['d']) == (
-        "Could not stop controller with name 'd' because no controller with this name exists",)
+        "Could not stop controller with name 'd' because no controller with this name exists",
+    )
     assert refused(manager.switch, [], ['c']) == (
-        "Could not stop controller 'c' since it is not running",)
+        "Could not stop controller 'c' since it is not running",
+    )
     manager.switch(['c', 'd'], ['c'], strict=False)
     assert refused(manager.switch, ['c']) == ("Controller 'c' is already running",)
     assert refused(manager.switch, ['c'], ['c']) == (
-        "Could no start or stop controller 'c' because of conflicting switching command",)
+        "Could no start or stop controller 'c' because of conflicting switching command",
+    )
     manager.switch(['c'], ['d'], strict=False)
     assert manager.list()[0].state == 'running'
 
@@ -200,8 +286,11 @@ def test_a_command_that_is_not_finite_is_refused(command, world):
 def test_a_command_of_another_size_is_refused(world):
     model, manager = spawn_arm(world, POSITION)
     manager.load('arm', GROUP, BOTH)
-    with pytest.raises(ValueError, match=r'Dimension of command \(1\) does not match number of '
-                                         r'joints \(2\)! Not executing!'):
+    with pytest.raises(
+        ValueError,
+        match=r'Dimension of command \(1\) does not match number of '
+        r'joints \(2\)! Not executing!',
+    ):
         model.controller('arm').command([0.2])
 
 
@@ -217,8 +306,11 @@ def test_an_unknown_controller_is_named_with_those_that_exist(world):
 @pytest.mark.parametrize('interface', [EFFORT, POSITION, VELOCITY])
 def test_a_restored_world_repeats_bit_for_bit(interface, world):
     kind = interface.rpartition('/')[2].removesuffix('JointInterface').lower()
-    name = {'effort': 'JointGroupEffortController', 'position': 'JointGroupPositionController',
-            'velocity': 'JointGroupVelocityController'}[kind]
+    name = {
+        'effort': 'JointGroupEffortController',
+        'position': 'JointGroupPositionController',
+        'velocity': 'JointGroupVelocityController',
+    }[kind]
     gains = {one: {'p': 80.0, 'i': 5.0, 'd': 3.0, 'i_clamp': 4.0} for one in BOTH['joints']}
     model, manager = spawn_arm(world, interface, {} if kind == 'velocity' else gains)
     manager.load('arm', f'{kind}_controllers/{name}', BOTH)
@@ -291,33 +383,60 @@ def test_a_controller_that_fails_does_not_stop_the_world(world, caplog):
 def test_all_types_of_the_recorded_controller_manager_can_be_loaded():
     """The types that Gazebo's manager listed, with the packages that were built there."""
     recorded = {
-        'diff_drive_controller/DiffDriveController', STATES,
-        *(f'{kind}_controllers/JointTrajectoryController'
-          for kind in ('effort', 'position', 'velocity', 'pos_vel', 'pos_vel_acc')),
-        *(f'effort_controllers/Joint{what}Controller' for what in (
-            'Effort', 'GroupEffort', 'GroupPosition', 'Position', 'Velocity')),
+        'diff_drive_controller/DiffDriveController',
+        STATES,
+        *(
+            f'{kind}_controllers/JointTrajectoryController'
+            for kind in ('effort', 'position', 'velocity', 'pos_vel', 'pos_vel_acc')
+        ),
+        *(
+            f'effort_controllers/Joint{what}Controller'
+            for what in ('Effort', 'GroupEffort', 'GroupPosition', 'Position', 'Velocity')
+        ),
         'position_controllers/JointGroupPositionController',
         'position_controllers/JointPositionController',
-        *(f'velocity_controllers/Joint{what}Controller' for what in (
-            'GroupVelocity', 'Position', 'Velocity'))}
+        *(
+            f'velocity_controllers/Joint{what}Controller'
+            for what in ('GroupVelocity', 'Position', 'Velocity')
+        ),
+    }
     types = ControllerManager.types()
     assert {base for _, base in types} == {'controller_interface::ControllerBase'}
     assert recorded <= {name for name, _ in types}
 
 
-@pytest.mark.parametrize('huge', [1e300, 1e-300, -1e300, 10 ** 400])
-@pytest.mark.parametrize(('kind', 'paths'), [
-    (PID, ['pid/p', 'pid/i', 'pid/d', 'pid/i_clamp']),
-    (STATES, ['publish_rate']),
-    ('effort_controllers/GripperActionController', [
-        'stall_timeout', 'goal_tolerance', 'max_effort', 'gains/joint1/p']),
-    ('effort_controllers/JointTrajectoryController', [
-        'stop_trajectory_duration', 'state_publish_rate', 'action_monitor_rate',
-        'constraints/goal_time', 'gains/joint1/p'])])
+@pytest.mark.parametrize('huge', [1e300, 1e-300, -1e300, 10**400])
+@pytest.mark.parametrize(
+    ('kind', 'paths'),
+    [
+        (PID, ['pid/p', 'pid/i', 'pid/d', 'pid/i_clamp']),
+        (STATES, ['publish_rate']),
+        (
+            'effort_controllers/GripperActionController',
+            ['stall_timeout', 'goal_tolerance', 'max_effort', 'gains/joint1/p'],
+        ),
+        (
+            'effort_controllers/JointTrajectoryController',
+            [
+                'stop_trajectory_duration',
+                'state_publish_rate',
+                'action_monitor_rate',
+                'constraints/goal_time',
+                'gains/joint1/p',
+            ],
+        ),
+    ],
+)
 def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(kind, paths, huge, world):
     model, manager = spawn_arm(world)
-    parameters = {'joint': 'joint1', 'joints': ['joint1'], 'publish_rate': 50.0,
-                  'pid': {'p': 1.0}, 'gains': {'joint1': {'p': 1.0}}, 'constraints': {}}
+    parameters = {
+        'joint': 'joint1',
+        'joints': ['joint1'],
+        'publish_rate': 50.0,
+        'pid': {'p': 1.0},
+        'gains': {'joint1': {'p': 1.0}},
+        'constraints': {},
+    }
     for path in paths:
         *sections, last = path.split('/')
         inner = parameters

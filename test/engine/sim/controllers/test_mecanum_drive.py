@@ -9,10 +9,14 @@ from rosbots_description.sim.controllers import ControllerError
 ALL = tuple(name for name, _, _ in SIDES)
 TYPE = 'mecanum_drive_controller/MecanumDriveController'
 PARAMETERS = {
-    'front_left_wheel_joint': 'front_left_joint', 'back_left_wheel_joint': 'rear_left_joint',
-    'back_right_wheel_joint': 'rear_right_joint', 'front_right_wheel_joint': 'front_right_joint',
-    'pose_covariance_diagonal': [1.0] * 6, 'twist_covariance_diagonal': [1.0] * 6,
-    'cmd_vel_timeout': 60.0}
+    'front_left_wheel_joint': 'front_left_joint',
+    'back_left_wheel_joint': 'rear_left_joint',
+    'back_right_wheel_joint': 'rear_right_joint',
+    'front_right_wheel_joint': 'front_right_joint',
+    'pose_covariance_diagonal': [1.0] * 6,
+    'twist_covariance_diagonal': [1.0] * 6,
+    'cmd_vel_timeout': 60.0,
+}
 ARM = (BASE + TRACK) / 2.0
 
 
@@ -32,9 +36,14 @@ def spawned(world, parameters=PARAMETERS):
     return bot, bot.controller('drive')
 
 
-@pytest.mark.parametrize(('x', 'y', 'turn', 'speeds'), [
-    (0.2, 0.0, 0.0, (1.0, 1.0, 1.0, 1.0)), (0.0, 0.2, 0.0, (-1.0, 1.0, -1.0, 1.0)),
-    (0.0, 0.0, 0.2 / ARM, (-1.0, -1.0, 1.0, 1.0))])
+@pytest.mark.parametrize(
+    ('x', 'y', 'turn', 'speeds'),
+    [
+        (0.2, 0.0, 0.0, (1.0, 1.0, 1.0, 1.0)),
+        (0.0, 0.2, 0.0, (-1.0, 1.0, -1.0, 1.0)),
+        (0.0, 0.0, 0.2 / ARM, (-1.0, -1.0, 1.0, 1.0)),
+    ],
+)
 def test_wheels_turn_for_the_motion_and_odometry_follows_them(x, y, turn, speeds, world):
     _, drive = spawned(world)
     drive.command(x, turn, y)
@@ -53,4 +62,5 @@ def test_a_missing_wheel_is_named(world):
     with pytest.raises(ControllerError) as error:
         spawned(world, PARAMETERS | {'back_left_wheel_joint': None})
     assert error.value.sentences[0] == (
-        "Couldn't retrieve back_left_wheel_joint from param server.")
+        "Couldn't retrieve back_left_wheel_joint from param server."
+    )

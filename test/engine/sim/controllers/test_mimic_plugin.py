@@ -5,10 +5,14 @@ from support.controllers import EFFORT, arm
 
 from rosbots_description.sim import World
 
-LIBRARIES = ['libroboticsgroup_gazebo_mimic_joint_plugin.so',
-             'libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so']
-TAGS = ('<joint>joint1</joint><mimicJoint>joint2</mimicJoint><multiplier>-0.5</multiplier>'
-        '<offset>0.1</offset>')
+LIBRARIES = [
+    'libroboticsgroup_gazebo_mimic_joint_plugin.so',
+    'libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so',
+]
+TAGS = (
+    '<joint>joint1</joint><mimicJoint>joint2</mimicJoint><multiplier>-0.5</multiplier>'
+    '<offset>0.1</offset>'
+)
 CUT = '<transmission name="joint2_trans">'
 
 
@@ -21,12 +25,21 @@ def world():
 def spawned(world, tags=TAGS, library=LIBRARIES[0]):
     """Return the arm, with a controller of its first joint only."""
     extra = f'<plugin name="mimic" filename="{library}">{tags}</plugin></gazebo></robot>'
-    bot = world.spawn(arm(EFFORT, lambda text: text.replace(
-        text[text.index(CUT):text.index('<gazebo>')], '').replace('</gazebo>\n</robot>', extra)),
-        name='arm')
+    bot = world.spawn(
+        arm(
+            EFFORT,
+            lambda text: text.replace(text[text.index(CUT) : text.index('<gazebo>')], '').replace(
+                '</gazebo>\n</robot>', extra
+            ),
+        ),
+        name='arm',
+    )
     manager = bot.plugin('gazebo_ros_control').manager
-    manager.load('arm', 'effort_controllers/JointPositionController',
-                 {'joint': 'joint1', 'pid': {'p': 500.0, 'd': 50.0, 'i': 50.0, 'i_clamp': 20.0}})
+    manager.load(
+        'arm',
+        'effort_controllers/JointPositionController',
+        {'joint': 'joint1', 'pid': {'p': 500.0, 'd': 50.0, 'i': 50.0, 'i_clamp': 20.0}},
+    )
     manager.switch(['arm'])
     bot.controller('arm').command(0.6)
     return bot
@@ -49,7 +62,8 @@ def test_a_pid_drives_the_joint_within_its_effort(world):
     plugin.configure({'gazebo_ros_control': {'pid_gains': {'joint2': gains}}})
     world.run(3000)
     assert bot.joint('joint2').position == pytest.approx(
-        -0.5 * bot.joint('joint1').position + 0.1, abs=0.02)
+        -0.5 * bot.joint('joint1').position + 0.1, abs=0.02
+    )
 
 
 def test_a_pid_without_gains_is_named(world, caplog):
@@ -62,19 +76,32 @@ def test_a_joint_that_is_close_enough_is_left_alone(world):
     bot = spawned(world, f'{TAGS}<sensitiveness>9</sensitiveness>')
     world.run(50)
     assert bot.joint('joint2').position != pytest.approx(
-        -0.5 * bot.joint('joint1').position + 0.1, abs=0.01)
+        -0.5 * bot.joint('joint1').position + 0.1, abs=0.01
+    )
 
 
-@pytest.mark.parametrize(('tags', 'text'), [
-    ('', 'No joint element present. MimicJointPlugin could not be loaded.'),
-    ('<joint>joint1</joint>',
-     'No mimicJoint element present. MimicJointPlugin could not be loaded.'),
-    ('<joint>nose</joint><mimicJoint>joint2</mimicJoint>',
-     'No joint named "nose". MimicJointPlugin could not be loaded.'),
-    ('<joint>joint2</joint><mimicJoint>joint2</mimicJoint>',
-     'Joint "joint2" is to mimic itself; name another one in <joint>.'),
-    ('<joint>joint1</joint><mimicJoint>nose</mimicJoint>',
-     'No (mimic) joint named "nose". MimicJointPlugin could not be loaded.')])
+@pytest.mark.parametrize(
+    ('tags', 'text'),
+    [
+        ('', 'No joint element present. MimicJointPlugin could not be loaded.'),
+        (
+            '<joint>joint1</joint>',
+            'No mimicJoint element present. MimicJointPlugin could not be loaded.',
+        ),
+        (
+            '<joint>nose</joint><mimicJoint>joint2</mimicJoint>',
+            'No joint named "nose". MimicJointPlugin could not be loaded.',
+        ),
+        (
+            '<joint>joint2</joint><mimicJoint>joint2</mimicJoint>',
+            'Joint "joint2" is to mimic itself; name another one in <joint>.',
+        ),
+        (
+            '<joint>joint1</joint><mimicJoint>nose</mimicJoint>',
+            'No (mimic) joint named "nose". MimicJointPlugin could not be loaded.',
+        ),
+    ],
+)
 def test_a_missing_joint_gets_upstreams_words(tags, text, world, caplog):
     spawned(world, tags)
     assert text in caplog.text

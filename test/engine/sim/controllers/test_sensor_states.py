@@ -6,10 +6,14 @@ from support.controllers import arm
 from rosbots_description.sim import World
 from rosbots_description.sim.controllers import ControllerError
 
-IMU = ('<gazebo reference="link3"><sensor name="imu" type="imu"><update_rate>200</update_rate>'
-       '</sensor></gazebo></robot>')
-WRENCH = ('<gazebo><plugin name="wrist" filename="libgazebo_ros_ft_sensor.so">'
-          '<jointName>joint2</jointName><topicName>wrist</topicName></plugin></gazebo></robot>')
+IMU = (
+    '<gazebo reference="link3"><sensor name="imu" type="imu"><update_rate>200</update_rate>'
+    '</sensor></gazebo></robot>'
+)
+WRENCH = (
+    '<gazebo><plugin name="wrist" filename="libgazebo_ros_ft_sensor.so">'
+    '<jointName>joint2</jointName><topicName>wrist</topicName></plugin></gazebo></robot>'
+)
 IMUS = 'imu_sensor_controller/ImuSensorController'
 WRENCHES = 'force_torque_sensor_controller/ForceTorqueSensorController'
 WEIGHT = 0.6 * 9.8  # [N] of the last link
@@ -23,8 +27,13 @@ def world():
 
 def started(world, kind, extra, parameters):
     """Return the arm, at rest and held upright, and its running controller."""
-    bot = world.spawn(arm('hardware_interface/PositionJointInterface',
-                          lambda text: text.replace('</robot>', extra)), name='arm')
+    bot = world.spawn(
+        arm(
+            'hardware_interface/PositionJointInterface',
+            lambda text: text.replace('</robot>', extra),
+        ),
+        name='arm',
+    )
     manager = bot.plugin('gazebo_ros_control').manager
     manager.load('sensors', kind, parameters)
     manager.switch(['sensors'])
@@ -82,9 +91,11 @@ def test_a_robot_without_sensors_gets_upstreams_answer(world):
     with pytest.raises(ControllerError) as error:
         started(world, IMUS, '</robot>', {'publish_rate': 50})
     assert error.value.sentences == (
-        "This controller requires a hardware interface of type "
+        'This controller requires a hardware interface of type '
         "'hardware_interface::ImuSensorInterface'. Make sure this is registered in the "
-        'hardware_interface::RobotHW class.', "Initializing controller 'sensors' failed")
+        'hardware_interface::RobotHW class.',
+        "Initializing controller 'sensors' failed",
+    )
 
 
 def test_a_rate_is_needed(world):

@@ -11,9 +11,13 @@ HALF_ROW = 0.001  # [s] resolution of a rise in rows that are 10 ms apart
 
 # Scene, number of the command, joint. A step on a stop is chaotic: it is not compared.
 STEPS = [
-    ('effort_pos', 0, 0), ('effort_pos', 1, 1), ('effort_pos', 2, 0),
-    ('position', 0, 0), ('position', 1, 1),
-    ('position_pid', 0, 0), ('position_pid', 1, 1),
+    ('effort_pos', 0, 0),
+    ('effort_pos', 1, 1),
+    ('effort_pos', 2, 0),
+    ('position', 0, 0),
+    ('position', 1, 1),
+    ('position_pid', 0, 0),
+    ('position_pid', 1, 1),
 ]
 
 
@@ -56,8 +60,10 @@ class Step:
 @pytest.fixture(scope='module')
 def traces():
     """Return the traces here, by scene."""
-    return {name: trace(name, round(1000.0 * RECORDED[name]['trace'][-1][0]))
-            for name in {name for name, _, _ in STEPS} | {'velocity', 'velocity_pid', 'effort_vel'}}
+    return {
+        name: trace(name, round(1000.0 * RECORDED[name]['trace'][-1][0]))
+        for name in {name for name, _, _ in STEPS} | {'velocity', 'velocity_pid', 'effort_vel'}
+    }
 
 
 def responses(traces, name, number, joint):
@@ -69,12 +75,18 @@ def responses(traces, name, number, joint):
     rows = [row for row in scene['trace'] if begin <= row[0] <= end - 0.001]
     ours = traces[name]
     # The time at which the recorded command took effect is known to a row only.
-    off = min(range(LATEST), key=lambda shift: sum(
-        abs(row[1 + joint] - sampled(ours, max(begin, row[0] - shift / 1000.0), joint))
-        for row in rows))
+    off = min(
+        range(LATEST),
+        key=lambda shift: sum(
+            abs(row[1 + joint] - sampled(ours, max(begin, row[0] - shift / 1000.0), joint))
+            for row in rows
+        ),
+    )
     times = [row[0] for row in rows]
-    return (Step(times, [row[1 + joint] for row in rows]),
-            Step(times, [sampled(ours, max(begin, t - off / 1000.0), joint) for t in times]))
+    return (
+        Step(times, [row[1 + joint] for row in rows]),
+        Step(times, [sampled(ours, max(begin, t - off / 1000.0), joint) for t in times]),
+    )
 
 
 @pytest.mark.parametrize(('name', 'number', 'joint'), STEPS)
@@ -85,15 +97,22 @@ def test_rise_overshoot_and_end_of_a_step_are_as_recorded(name, number, joint, t
     assert ours.end == pytest.approx(recorded.end, abs=END * recorded.size)
 
 
-@pytest.mark.parametrize(('name', 'number', 'joint', 'after', 'until'), [
-    ('velocity', 0, 0, 0.1, 1.9), ('velocity', 1, 1, 0.1, 0.9),
-    ('velocity_pid', 0, 0, 0.1, 1.9), ('velocity_pid', 1, 1, 0.1, 0.9),
-    ('effort_vel', 0, 0, 0.1, 0.6)])
+@pytest.mark.parametrize(
+    ('name', 'number', 'joint', 'after', 'until'),
+    [
+        ('velocity', 0, 0, 0.1, 1.9),
+        ('velocity', 1, 1, 0.1, 0.9),
+        ('velocity_pid', 0, 0, 0.1, 1.9),
+        ('velocity_pid', 1, 1, 0.1, 0.9),
+        ('effort_vel', 0, 0, 0.1, 0.6),
+    ],
+)
 def test_commanded_velocities_are_as_recorded(name, number, joint, after, until, traces):
     sent = RECORDED[name]['sent'][number][0]
     recorded, ours = (
         sampled(rows, sent + until, joint) - sampled(rows, sent + after, joint)
-        for rows in (RECORDED[name]['trace'], traces[name]))
+        for rows in (RECORDED[name]['trace'], traces[name])
+    )
     assert ours == pytest.approx(recorded, rel=END)
 
 

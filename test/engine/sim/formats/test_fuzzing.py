@@ -36,10 +36,17 @@ def crash():
     os.abort()
 
 
-@pytest.mark.parametrize(('fault', 'said'), [
-    (hog, 'MemoryError'), (stranger, 'KeyError'), (two_lines, 'not a printable line'),
-    (traceback, 'KeyError'), (lambda: os.write(1, b'x'), 'printed: x'), (crash, 'SIGABRT'),
-])
+@pytest.mark.parametrize(
+    ('fault', 'said'),
+    [
+        (hog, 'MemoryError'),
+        (stranger, 'KeyError'),
+        (two_lines, 'not a printable line'),
+        (traceback, 'KeyError'),
+        (lambda: os.write(1, b'x'), 'printed: x'),
+        (crash, 'SIGABRT'),
+    ],
+)
 def test_a_fault_fails_the_trial_and_the_next_one_begins_anew(monkeypatch, fault, said):
     with Fuzzer() as fuzzer:  # its child has the methods of now
         fuzzer.judge('model', BOX)

@@ -53,7 +53,10 @@ ROBOT = f"""<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 OPTIONS = ('camera', 'depth', 'imu', 'laser', 'bumper', 'surfaces', 'nonsense')  # of our robot
 ARGUMENTS = st.dictionaries(
     st.sampled_from(('mass', 'size', 'name', 'flag')) | ADVERSARIAL,
-    st.sampled_from(('0.3', '2', 'true', 'false', '1 + 1')) | ADVERSARIAL, min_size=1, max_size=3)
+    st.sampled_from(('0.3', '2', 'true', 'false', '1 + 1')) | ADVERSARIAL,
+    min_size=1,
+    max_size=3,
+)
 
 
 @pytest.fixture(scope='module')

@@ -59,9 +59,13 @@ def is_inside(geometry, point):
 
 
 def random_thing(rng):
-    geometry = rng.choice((
-        Box(tuple(rng.uniform(0.05, 1.0) for _ in range(3))), Sphere(rng.uniform(0.05, 0.5)),
-        Cylinder(rng.uniform(0.05, 0.5), rng.uniform(0.05, 1.0))))
+    geometry = rng.choice(
+        (
+            Box(tuple(rng.uniform(0.05, 1.0) for _ in range(3))),
+            Sphere(rng.uniform(0.05, 0.5)),
+            Cylinder(rng.uniform(0.05, 0.5), rng.uniform(0.05, 1.0)),
+        )
+    )
     place = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), HEIGHT + rng.uniform(-0.4, 0.4)
     return geometry, Pose(place, from_rpy(*(rng.uniform(-3.0, 3.0) for _ in range(3))))
 
@@ -77,14 +81,22 @@ def test_cells_are_those_that_samples_of_the_shape_lie_in(seed):
     xs, ys = zip(*places, strict=True)
     for x in range(min(xs) - 2, max(xs) + 3):
         for y in range(min(ys) - 2, max(ys) + 3):
-            sampled[x, y] = sum(is_inside(geometry, compose(back, Pose(
-                ((x + u) * CELL, (y + v) * CELL, HEIGHT))).position)
-                for u in offsets[::4] for v in offsets[::4])
+            sampled[x, y] = sum(
+                is_inside(
+                    geometry, compose(back, Pose(((x + u) * CELL, (y + v) * CELL, HEIGHT))).position
+                )
+                for u in offsets[::4]
+                for v in offsets[::4]
+            )
     inside = {cell for cell, count in sampled.items() if count}
     assert inside <= found
     missed = found - inside  # the shape has a corner in them, between samples
-    assert all({(x + dx, y + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)} & inside
-               for x, y in missed) or not inside
+    assert (
+        all(
+            {(x + dx, y + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)} & inside for x, y in missed
+        )
+        or not inside
+    )
     assert len(missed) <= max(3, len(found) // 4)
 
 
@@ -103,8 +115,9 @@ def test_a_wall_thinner_than_a_cell_has_no_gap():
     reached, new = set(), {ends[0]}
     while new:  # from cell to cell, by their edges
         reached |= new
-        new = {(x + dx, y + dy) for x, y in new
-               for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))} & found - reached
+        new = {
+            (x + dx, y + dy) for x, y in new for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))
+        } & found - reached
     assert ends[1] in reached
 
 
@@ -112,8 +125,14 @@ def test_the_surfaces_of_a_mesh_occupy_cells(tmp_path):
     corners = [(x, y, z) for x in (0, 3) for y in (0, 3) for z in (0, 1)]
     faces = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
     path = tmp_path / 'room.obj'
-    path.write_text('\n'.join([*(f'v {x} {y} {z}' for x, y, z in corners),
-                               *('f ' + ' '.join(map(str, face)) for face in faces)]))
+    path.write_text(
+        '\n'.join(
+            [
+                *(f'v {x} {y} {z}' for x, y, z in corners),
+                *('f ' + ' '.join(map(str, face)) for face in faces),
+            ]
+        )
+    )
     around = {(x, y) for x in range(30) for y in range(30) if {x, y} & {0, 29}}
     assert cells(grid_of((Mesh(str(path)), Pose()))) == around
     mirrored = grid_of((Mesh(str(path), (-1.0, 1.0, 1.0)), Pose((3.0, 0.0, 0.0))))
@@ -152,20 +171,25 @@ def test_files_are_those_of_map_server(tmp_path):
         with pytest.raises(SimError, match='exists already'):
             world.save_map(tmp_path / "it's", HEIGHT, CELL, margin=0.0)
     assert (tmp_path / "it's.pgm").read_bytes() == (
-        b'P5\n3 2\n255\n' + bytes([0, 254, 254, 0, 0, 0]))  # from the top
+        b'P5\n3 2\n255\n' + bytes([0, 254, 254, 0, 0, 0])
+    )  # from the top
     assert (tmp_path / "it's.yaml").read_text() == (
         'image: "it\'s.pgm"\nresolution: 0.1\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n'
-        'occupied_thresh: 0.65\nfree_thresh: 0.196\n')
+        'occupied_thresh: 0.65\nfree_thresh: 0.196\n'
+    )
 
 
-@pytest.mark.parametrize(('options', 'kind', 'message'), [
-    ({'resolution': 0.0}, ValueError, 'positive resolution'),
-    ({'height': math.nan}, ValueError, 'finite height'),
-    ({'margin': -1.0}, ValueError, 'at least 0'),
-    ({'resolution': 1e-6}, SimError, 'too large'),
-    ({'margin': 1e300}, SimError, 'too large'),
-    ({'without': ['nobody']}, NotFoundError, "no model 'nobody'; models: thing"),
-])
+@pytest.mark.parametrize(
+    ('options', 'kind', 'message'),
+    [
+        ({'resolution': 0.0}, ValueError, 'positive resolution'),
+        ({'height': math.nan}, ValueError, 'finite height'),
+        ({'margin': -1.0}, ValueError, 'at least 0'),
+        ({'resolution': 1e-6}, SimError, 'too large'),
+        ({'margin': 1e300}, SimError, 'too large'),
+        ({'without': ['nobody']}, NotFoundError, "no model 'nobody'; models: thing"),
+    ],
+)
 def test_bad_arguments_get_a_sentence(options, kind, message):
     with World() as world:
         world.spawn(still(Sphere(1.0)))

@@ -48,36 +48,57 @@ def colladas(draw):
     points = draw(POINTS)
     index = [(0, n, n + 1) for n in range(1, len(points) - 1)]
     return COLLADA.format(
-        unit=draw(st.sampled_from(('1', '0.01', '0.0254'))), count=len(points),
-        numbers=3 * len(points), points=words(x for point in points for x in point),
-        faces=len(index), index=words(n for face in index for n in face))
+        unit=draw(st.sampled_from(('1', '0.01', '0.0254'))),
+        count=len(points),
+        numbers=3 * len(points),
+        points=words(x for point in points for x in point),
+        faces=len(index),
+        index=words(n for face in index for n in face),
+    )
 
 
 @st.composite
 def binary_stls(draw):
     points = draw(POINTS)
-    triangles = [struct.pack('<12fH', 0, 0, 1, *points[0], *a, *b, 0)
-                 for a, b in pairwise(points[1:])]
+    triangles = [
+        struct.pack('<12fH', 0, 0, 1, *points[0], *a, *b, 0) for a, b in pairwise(points[1:])
+    ]
     return bytes(80) + struct.pack('<I', len(triangles)) + b''.join(triangles)
 
 
 @st.composite
 def ascii_stls(draw):
     points = draw(POINTS)
-    return '\n'.join(['solid s', *(
-        f'facet normal 0 0 1\nouter loop\nvertex {words(points[0])}\nvertex {words(a)}\nvertex '
-        f'{words(b)}\nendloop\nendfacet' for a, b in pairwise(points[1:])),
-        'endsolid s\n'])
+    return '\n'.join(
+        [
+            'solid s',
+            *(
+                f'facet normal 0 0 1\nouter loop\nvertex {words(points[0])}\nvertex {words(a)}\nvertex '
+                f'{words(b)}\nendloop\nendfacet'
+                for a, b in pairwise(points[1:])
+            ),
+            'endsolid s\n',
+        ]
+    )
 
 
 @st.composite
 def objs(draw):
     points = draw(POINTS)
     count = len(points)
-    return '\n'.join([
-        'o thing', *(f'v {words(point)}' for point in points), 'vn 0 0 1', 'vt 0.5 0.5',
-        'usemtl red', *(f'f 1 {n} {n + 1}' for n in range(2, count)),
-        f'f {" ".join(f"{n}/1/1" for n in range(1, count + 1))}', 'f -1 -2 -3', 'g end'])
+    return '\n'.join(
+        [
+            'o thing',
+            *(f'v {words(point)}' for point in points),
+            'vn 0 0 1',
+            'vt 0.5 0.5',
+            'usemtl red',
+            *(f'f 1 {n} {n + 1}' for n in range(2, count)),
+            f'f {" ".join(f"{n}/1/1" for n in range(1, count + 1))}',
+            'f -1 -2 -3',
+            'g end',
+        ]
+    )
 
 
 @given(st.data())

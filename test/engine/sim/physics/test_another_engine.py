@@ -63,5 +63,6 @@ def test_wheels_turn_by_their_positions(world):
     wheels = [name for name, joint in robot.joints.items() if 'wheel' in joint.spec.child]
     for name in wheels[:2]:
         assert abs(robot.joints[name].position - before[name]) == pytest.approx(
-            0.5 / (0.5 * DIAMETER), rel=1e-6)
+            0.5 / (0.5 * DIAMETER), rel=1e-6
+        )
     assert math.isfinite(sum(joint.position for joint in robot.joints.values()))

@@ -141,8 +141,9 @@ def test_equal_content_is_tested_once_whatever_its_name_and_visuals():
         sandbox.require()
         assert sandbox.trials == 1
         (link,) = CRATE.links
-        sandbox.require(replace(CRATE, name='other', location='elsewhere',
-                                links=(replace(link, visuals=()),)))
+        sandbox.require(
+            replace(CRATE, name='other', location='elsewhere', links=(replace(link, visuals=()),))
+        )
         assert sandbox.trials == 1
         heavier = replace(link, inertial=replace(link.inertial, mass=3.0))
         sandbox.require(replace(CRATE, links=(heavier,)))
@@ -150,8 +151,9 @@ def test_equal_content_is_tested_once_whatever_its_name_and_visuals():
 
 
 def mesh_spec(source):
-    return urdf_spec(box_urdf('1 1 1', 2.0).replace(
-        '<box size="1 1 1"/>', f'<mesh filename="file://{source}"/>'))
+    return urdf_spec(
+        box_urdf('1 1 1', 2.0).replace('<box size="1 1 1"/>', f'<mesh filename="file://{source}"/>')
+    )
 
 
 def test_mesh_is_identified_by_the_content_of_its_file(tmp_path):
@@ -166,11 +168,15 @@ def test_mesh_is_identified_by_the_content_of_its_file(tmp_path):
 def tetrahedron(height):
     corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, height)]
     faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-    loops = (''.join(f'vertex {x} {y} {z}\n' for x, y, z in map(corners.__getitem__, face))
-             for face in faces)
-    return 'solid t\n' + ''.join(
-        f'facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n' for loop in loops
-    ) + 'endsolid t\n'
+    loops = (
+        ''.join(f'vertex {x} {y} {z}\n' for x, y, z in map(corners.__getitem__, face))
+        for face in faces
+    )
+    return (
+        'solid t\n'
+        + ''.join(f'facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n' for loop in loops)
+        + 'endsolid t\n'
+    )
 
 
 def test_oldest_accepted_contents_are_forgotten_first(monkeypatch):
@@ -195,13 +201,15 @@ def test_coincident_boxes_are_accepted():
 def test_model_that_crashes_the_engine_is_rejected(number):
     assert fault_of(lambda: os.kill(os.getpid(), number)) == (
         "model 'crate' is rejected: tested in a process of its own, it crashed the physics "
-        f'engine ({number.name}); leave out parts of it to find the one that does it, meshes first')
+        f'engine ({number.name}); leave out parts of it to find the one that does it, meshes first'
+    )
 
 
 def test_model_that_hangs_the_engine_is_rejected(monkeypatch):
     allow(monkeypatch, SHORT)
     assert f'needed more than {SHORT} s of processor time for it;' in fault_of(
-        lambda: burn(math.inf))
+        lambda: burn(math.inf)
+    )
 
 
 def test_model_that_blocks_the_engine_is_rejected(monkeypatch):
@@ -325,8 +333,10 @@ def test_model_is_accepted_with_a_warning_if_no_process_can_be_made(caplog, monk
     with Sandbox() as sandbox:
         os.kill(sandbox.process, signal.SIGKILL)
         sandbox.require()
-    assert "model 'crate' was not tested in the sandbox, since the operating system failed " \
+    assert (
+        "model 'crate' was not tested in the sandbox, since the operating system failed "
         '(Resource temporarily unavailable)' in caplog.text
+    )
 
 
 def test_killed_sandbox_is_started_again_and_still_rejects(caplog):
@@ -339,13 +349,18 @@ def test_killed_sandbox_is_started_again_and_still_rejects(caplog):
         with pytest.raises(ModelError, match='its pose or velocity was not finite'):
             sandbox.require(diverging)
     assert caplog.messages == [
-        'the process crash_sandbox has ended (killed by signal 9); it is started again']
+        'the process crash_sandbox has ended (killed by signal 9); it is started again'
+    ]
 
 
-@pytest.mark.parametrize('fault', [
-    OSError(number, os.strerror(number))
-    for number in (errno.EISDIR, errno.EMFILE, errno.ENOMEM, errno.ENOSPC)
-] + [MemoryError()])
+@pytest.mark.parametrize(
+    'fault',
+    [
+        OSError(number, os.strerror(number))
+        for number in (errno.EISDIR, errno.EMFILE, errno.ENOMEM, errno.ENOSPC)
+    ]
+    + [MemoryError()],
+)
 def test_failure_of_the_operating_system_is_reported_as_such(fault):
     def fail():
         raise fault
@@ -353,7 +368,8 @@ def test_failure_of_the_operating_system_is_reported_as_such(fault):
     reason = getattr(fault, 'strerror', None) or 'Cannot allocate memory'
     assert fault_of(fail) == (
         "model 'crate' is rejected: it could not be tested before, since the operating "
-        f'system failed ({reason}); fix that and spawn the model again')
+        f'system failed ({reason}); fix that and spawn the model again'
+    )
 
 
 def test_kill_for_lack_of_memory_is_reported_as_a_failure_of_the_system():
@@ -430,8 +446,9 @@ def test_models_are_tested_while_the_world_runs():
 
         def try_some():
             for mass in range(1, 21):
-                spec = replace(CRATE, links=(
-                    replace(link, inertial=replace(link.inertial, mass=mass)),))
+                spec = replace(
+                    CRATE, links=(replace(link, inertial=replace(link.inertial, mass=mass)),)
+                )
                 sandbox.require(world.compile(spec), world.physics)
             goes_on.set()
 

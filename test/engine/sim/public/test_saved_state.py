@@ -51,13 +51,15 @@ def test_continuation_after_each_restore_is_bit_identical(name):
         robot = driving_robot(world)
         state = world.save_state()
         first = digest(world)
-        for change in (lambda: None,
-                       lambda: robot.plugin('diff_drive').command(-1.0, 0.0),
-                       lambda: robot.set_pose(Pose((2.0, 2.0, 3.0))),
-                       lambda: world.set_physics(PhysicsSettings(step_size=0.003)),
-                       lambda: robot.scale_mass(1.7),
-                       lambda: [link.scale_friction(0.1) for link in robot.links.values()],
-                       world.reset_world):
+        for change in (
+            lambda: None,
+            lambda: robot.plugin('diff_drive').command(-1.0, 0.0),
+            lambda: robot.set_pose(Pose((2.0, 2.0, 3.0))),
+            lambda: world.set_physics(PhysicsSettings(step_size=0.003)),
+            lambda: robot.scale_mass(1.7),
+            lambda: [link.scale_friction(0.1) for link in robot.links.values()],
+            world.reset_world,
+        ):
             world.restore(state)
             change()
             world.run(613)
@@ -67,7 +69,8 @@ def test_continuation_after_each_restore_is_bit_identical(name):
 
 def test_encoder_odometry_is_restored():
     text = expand_xacro(str(XACRO), {}, PackageSearch()).replace(
-        '<legacyMode>', '<odometrySource>encoder</odometrySource><legacyMode>')
+        '<legacyMode>', '<odometrySource>encoder</odometrySource><legacyMode>'
+    )
     with World.empty() as world:
         drive = world.spawn(text, z=0.5).plugin('diff_drive')
         drive.odometry.latch()

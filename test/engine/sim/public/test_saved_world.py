@@ -14,9 +14,11 @@ AHEAD = 300  # steps over which a motion is compared
 SAME = 1e-5  # [m] contacts are found anew; the speed of a body that lies there changes by 5 mm/s
 TURN = from_rpy(0.4, 0.3, 0.2)
 CRATE = f'<robot name="crate">{box_urdf("1 0.6 0.4", 2.0)}</robot>'
-LINK = ('<link name="{}"><pose>{}</pose><inertial><pose>0.1 0.2 0.05 0.3 0.2 0.1</pose><mass>2'
-        '</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz><ixy>0.01</ixy></inertia>'
-        '</inertial></link>')
+LINK = (
+    '<link name="{}"><pose>{}</pose><inertial><pose>0.1 0.2 0.05 0.3 0.2 0.1</pose><mass>2'
+    '</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz><ixy>0.01</ixy></inertia>'
+    '</inertial></link>'
+)
 ARM = f"""<sdf version="1.6"><model name="arm">{LINK.format('base', '0 0 0 0.1 0.2 0.3')}
 {LINK.format('upper', '0.3 0 0 1 0 0')}{LINK.format('slider', '0 0 0.5 0 1 0')}
 <joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
@@ -25,10 +27,14 @@ ARM = f"""<sdf version="1.6"><model name="arm">{LINK.format('base', '0 0 0 0.1 0
 <axis><xyz>1 0.2 0</xyz><dynamics><friction>0.1</friction></dynamics></axis></joint>
 </model></sdf>"""
 
-DOORS = '<sdf version="1.6"><model name="doors">{}</model></sdf>'.format(''.join(
-    LINK.format(name, pose) + f'<joint name="{name}_hinge" type="revolute"><parent>world</parent>'
-    f'<child>{name}</child><pose>0.1 0.5 0 0 0 0</pose><axis><xyz>0 0 1</xyz></axis></joint>'
-    for name, pose in (('first', '0 1 0 0 0 0.1'), ('second', '0 -1 0.2 0.3 0 0'))))
+DOORS = '<sdf version="1.6"><model name="doors">{}</model></sdf>'.format(
+    ''.join(
+        LINK.format(name, pose)
+        + f'<joint name="{name}_hinge" type="revolute"><parent>world</parent>'
+        f'<child>{name}</child><pose>0.1 0.5 0 0 0 0</pose><axis><xyz>0 0 1</xyz></axis></joint>'
+        for name, pose in (('first', '0 1 0 0 0 0.1'), ('second', '0 -1 0.2 0.3 0 0'))
+    )
+)
 
 
 def poses(world):
@@ -40,20 +46,25 @@ def poses(world):
 def farthest(one, other):
     """Return the greatest distance between two worlds' links [m]."""
     there = poses(other)
-    return max(math.dist(pose.position, there[name].position)
-               for name, pose in poses(one).items())
+    return max(math.dist(pose.position, there[name].position) for name, pose in poses(one).items())
 
 
 def require_same(world, other):
     assert list(other.models) == list(world.models)
     assert poses(other) == poses(world)
     assert (other.time, other.physics, other.scene, other.lights, other.name) == (
-        world.time, world.physics, world.scene, world.lights, world.name)
+        world.time,
+        world.physics,
+        world.scene,
+        world.lights,
+        world.name,
+    )
     for model in world.models.values():
         there = other.models[model.name]
         assert there.initial_pose == model.initial_pose
         assert {name: joint.state() for name, joint in there.joints.items()} == {
-            name: joint.state() for name, joint in model.joints.items()}
+            name: joint.state() for name, joint in model.joints.items()
+        }
         for link, again in zip(model.links.values(), there.links.values(), strict=True):
             if not model.static:
                 assert again.twist.linear == pytest.approx(link.twist.linear, abs=1e-12)
@@ -138,9 +149,11 @@ def test_poses_that_are_changed_by_hand_are_believed(tmp_path):
 
 def test_parts_of_its_file_that_nothing_acts_on_are_saved_again(tmp_path):
     path, saved = tmp_path / 'a.world', tmp_path / 'saved.world'
-    path.write_text('<sdf version="1.6"><world name="w"><road name="r"><width>3</width></road>'
-                    '<light name="lamp" type="point"/><plugin name="p" filename="libp.so">'
-                    '<rate>5</rate></plugin></world></sdf>')
+    path.write_text(
+        '<sdf version="1.6"><world name="w"><road name="r"><width>3</width></road>'
+        '<light name="lamp" type="point"/><plugin name="p" filename="libp.so">'
+        '<rate>5</rate></plugin></world></sdf>'
+    )
     with World.from_file(path) as world:
         world.save(saved)
     root = etree.parse(saved)
@@ -151,8 +164,10 @@ def test_parts_of_its_file_that_nothing_acts_on_are_saved_again(tmp_path):
 
 def test_what_is_not_in_the_file_is_named(tmp_path):
     part = LINK.format('hill', '0 0 0 0 0 0').replace(
-        '</link>', '<collision name="c"><geometry><heightmap/></geometry></collision>'
-        '<sensor name="s" type="sonar"/></link>')
+        '</link>',
+        '<collision name="c"><geometry><heightmap/></geometry></collision>'
+        '<sensor name="s" type="sonar"/></link>',
+    )
     with World.empty() as world:
         hill = world.spawn(f'<sdf version="1.6"><model name="hill">{part}</model></sdf>')
         world.apply_wrench(hill.link('hill'), (1.0, 0.0, 0.0))
@@ -160,7 +175,8 @@ def test_what_is_not_in_the_file_is_named(tmp_path):
         assert world.save(tmp_path / 'a.world') == (
             f"of model 'hill' what was left out: {hill.spec.left_out[0]}",
             "of model 'hill' the factors on mass and friction",
-            'forces and efforts that act for a time')
+            'forces and efforts that act for a time',
+        )
         assert 'heightmap' in hill.spec.left_out[0]
         assert '<sensor name="s" type="sonar"' in (tmp_path / 'a.world').read_text()
         with pytest.raises(SimError, match='exists already'):

@@ -46,7 +46,7 @@ def test_acceleration_is_inverse_to_mass_and_moments():
 
 @pytest.mark.parametrize('factor', [0.3, 1.0, 2.0])
 def test_sliding_distance_is_inverse_to_friction(factor):
-    assert slid(factor) == pytest.approx(2.0 ** 2 / (2.0 * 9.8 * factor), rel=0.1)
+    assert slid(factor) == pytest.approx(2.0**2 / (2.0 * 9.8 * factor), rel=0.1)
 
 
 def test_heavier_pendulum_on_a_spring_swings_slower():
@@ -54,8 +54,12 @@ def test_heavier_pendulum_on_a_spring_swings_slower():
         with World(PhysicsSettings(gravity=(0.0, 0.0, 0.0))) as world:
             joint = '<dynamics damping="0" friction="0"/>'
             rod = world.spawn(
-                PENDULUM.format(joint).replace('</robot>', '''<gazebo reference="hinge">
-<springStiffness>80</springStiffness></gazebo></robot>'''))
+                PENDULUM.format(joint).replace(
+                    '</robot>',
+                    """<gazebo reference="hinge">
+<springStiffness>80</springStiffness></gazebo></robot>""",
+                )
+            )
             rod.scale_mass(factor)
             hinge = rod.joint('hinge')
             hinge.set_position(0.3)

@@ -18,8 +18,11 @@ FIRST, APART = 40.0, 3.0  # [m] from the walls of these worlds; from robot to ro
 
 def outputs(part):
     """Return the outputs of a plugin or sensor."""
-    return [value for name in dir(part) if not name.startswith('_')
-            and isinstance(value := getattr(part, name, None), Output)]
+    return [
+        value
+        for name in dir(part)
+        if not name.startswith('_') and isinstance(value := getattr(part, name, None), Output)
+    ]
 
 
 @pytest.mark.parametrize('number', range(len(WORLDS)))
@@ -28,8 +31,7 @@ def test_each_is_spawned_driven_and_sensed_without_an_error(number, caplog):
     robots = {}
     with World.from_file(WORLDS[number]) as world:
         for k in range(number, ROBOTS, len(WORLDS)):
-            robots[k] = world.spawn(
-                urdf(k), name=f'r{k}', x=FIRST, y=APART * len(robots), z=0.1)
+            robots[k] = world.spawn(urdf(k), name=f'r{k}', x=FIRST, y=APART * len(robots), z=0.1)
         for robot in robots.values():
             for part in robot.parts:
                 for output in outputs(part):
@@ -46,11 +48,11 @@ def test_each_is_spawned_driven_and_sensed_without_an_error(number, caplog):
             for sensor in robot.sensors.values():
                 if sensor.measures:
                     sensor.read()
-    errors = [record.getMessage() for record in caplog.records
-              if record.levelno >= logging.ERROR]
+    errors = [record.getMessage() for record in caplog.records if record.levelno >= logging.ERROR]
     assert errors == []
-    missing = {name for k in robots if k % 6 == 5 for name in missing_libraries()
-               if name in urdf(k)}
+    missing = {
+        name for k in robots if k % 6 == 5 for name in missing_libraries() if name in urdf(k)
+    }
     for name in missing:
         assert name in caplog.text  # what is left out is said
 

@@ -25,7 +25,7 @@ CRATE = f'<robot name="crate">{box_urdf("1 1 1", 2.0)}</robot>'
 CRATE_SDF = """<sdf version="1.6"><model name="crate"><pose>0 0 1 0 0 0</pose><link name="box">
 <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>
 </sdf>"""
-PENDULUM = f"""<robot name="pendulum"><link name="world"/>{box_urdf("1 1 1", 2.0)}
+PENDULUM = f"""<robot name="pendulum"><link name="world"/>{box_urdf('1 1 1', 2.0)}
 <joint name="hinge" type="continuous"><parent link="world"/><child link="box"/><axis xyz="0 0 1"/>
 </joint></robot>"""
 
@@ -83,25 +83,29 @@ def test_xacro_arguments_are_passed(world, tmp_path):
     file = tmp_path / 'crate.xacro'
     file.write_text(
         '<robot name="crate" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-        f'<xacro:arg name="mass" default="2"/>{box_urdf("1 1 1", "$(arg mass)")}</robot>')
+        f'<xacro:arg name="mass" default="2"/>{box_urdf("1 1 1", "$(arg mass)")}</robot>'
+    )
     plain = world.spawn(file, z=1.0)
     heavy = world.spawn(file, 'heavy', x=3.0, arguments={'mass': '5'})
     assert [model.spec.links[0].inertial.mass for model in (plain, heavy)] == [2.0, 5.0]
 
 
-@pytest.mark.parametrize(('spawn', 'message'), [
-    (lambda world: world.spawn('nowhere.urdf'), "'nowhere.urdf' cannot be read: No such file"),
-    (lambda world: world.spawn('<html/>'), '<robot> (URDF) or <sdf>, not <html>'),
-    (lambda world: world.spawn('<!-- -->'), '<robot> (URDF) or <sdf>, not missing'),
-    (lambda world: world.spawn('<robot/>', 'thing'), 'link'),
-    (lambda world: world.spawn('<robot><link name="l"/></robot>'), 'give one with name='),
-    (lambda world: world.spawn('package://nobodys/robot.urdf'), "package 'nobodys'"),
-    (lambda world: world.spawn('model://nothing'), "'model://nothing' is not to be found"),
-    (lambda world: world.spawn(CRATE, 'ground_plane'), "named 'ground_plane' is in the world"),
-    (lambda world: world.spawn(CRATE, x=1e300), 'm away'),
-    (lambda _: World.from_file('nowhere.world'), "no world file 'nowhere.world'"),
-    (lambda _: World.from_file(XACRO), 'an SDF begins with <sdf'),
-])
+@pytest.mark.parametrize(
+    ('spawn', 'message'),
+    [
+        (lambda world: world.spawn('nowhere.urdf'), "'nowhere.urdf' cannot be read: No such file"),
+        (lambda world: world.spawn('<html/>'), '<robot> (URDF) or <sdf>, not <html>'),
+        (lambda world: world.spawn('<!-- -->'), '<robot> (URDF) or <sdf>, not missing'),
+        (lambda world: world.spawn('<robot/>', 'thing'), 'link'),
+        (lambda world: world.spawn('<robot><link name="l"/></robot>'), 'give one with name='),
+        (lambda world: world.spawn('package://nobodys/robot.urdf'), "package 'nobodys'"),
+        (lambda world: world.spawn('model://nothing'), "'model://nothing' is not to be found"),
+        (lambda world: world.spawn(CRATE, 'ground_plane'), "named 'ground_plane' is in the world"),
+        (lambda world: world.spawn(CRATE, x=1e300), 'm away'),
+        (lambda _: World.from_file('nowhere.world'), "no world file 'nowhere.world'"),
+        (lambda _: World.from_file(XACRO), 'an SDF begins with <sdf'),
+    ],
+)
 def test_error_of_a_spawn_is_one_sentence(world, spawn, message):
     with pytest.raises(SimError) as raised:
         spawn(world)
@@ -109,21 +113,24 @@ def test_error_of_a_spawn_is_one_sentence(world, spawn, message):
     assert list(world.models) == ['ground_plane']
 
 
-@pytest.mark.parametrize('call', [
-    lambda world: world.spawn(CRATE, z=math.nan),
-    lambda world: world.spawn(CRATE, pose=Pose((0.0, math.inf, 0.0))),
-    lambda world: world.spawn(CRATE, pose=Pose(), z=1.0),
-    lambda world: world.run(),
-    lambda world: world.run(3, seconds=0.1),
-    lambda world: world.run(1.0),
-    lambda world: world.run(seconds=-1.0),
-    lambda world: world.run(seconds=math.inf),
-    lambda world: world.step(-1),
-    lambda world: world.apply_effort(world.spawn(PENDULUM).joint('hinge'), math.nan),
-    lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), (math.inf, 0.0, 0.0)),
-    lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), seconds=-1.0),
-    lambda world: world.spawn(XACRO).plugin('diff_drive').command(math.nan, 0.0),
-])
+@pytest.mark.parametrize(
+    'call',
+    [
+        lambda world: world.spawn(CRATE, z=math.nan),
+        lambda world: world.spawn(CRATE, pose=Pose((0.0, math.inf, 0.0))),
+        lambda world: world.spawn(CRATE, pose=Pose(), z=1.0),
+        lambda world: world.run(),
+        lambda world: world.run(3, seconds=0.1),
+        lambda world: world.run(1.0),
+        lambda world: world.run(seconds=-1.0),
+        lambda world: world.run(seconds=math.inf),
+        lambda world: world.step(-1),
+        lambda world: world.apply_effort(world.spawn(PENDULUM).joint('hinge'), math.nan),
+        lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), (math.inf, 0.0, 0.0)),
+        lambda world: world.apply_wrench(world.spawn(CRATE).link('box'), seconds=-1.0),
+        lambda world: world.spawn(XACRO).plugin('diff_drive').command(math.nan, 0.0),
+    ],
+)
 def test_invalid_number_is_a_value_error(world, call):
     with pytest.raises(ValueError, match=r'\w+ (takes|goes|is|got)'):
         call(world)
@@ -171,11 +178,18 @@ def test_links_joints_and_plugins_are_found_by_name_or_the_error_lists_them(worl
     assert robot.link('robot::wheel_left_link') is robot.link('wheel_left_link')
     assert robot.joint('robot::wheel_left_joint') is robot.joint('wheel_left_joint')
     (plugin,) = robot.plugins.values()
-    for name in ('differential_drive_controller', 'diff_drive', 'libgazebo_ros_diff_drive.so',
-                 'gazebo_ros_diff_drive'):
+    for name in (
+        'differential_drive_controller',
+        'diff_drive',
+        'libgazebo_ros_diff_drive.so',
+        'gazebo_ros_diff_drive',
+    ):
         assert robot.plugin(name) is plugin
-    for find, known in ((robot.link, 'base_footprint, wheel_left_link'), (world.model, 'robot'),
-                        (robot.plugin, "'differential_drive_controller' (libgazebo_ros_diff_")):
+    for find, known in (
+        (robot.link, 'base_footprint, wheel_left_link'),
+        (world.model, 'robot'),
+        (robot.plugin, "'differential_drive_controller' (libgazebo_ros_diff_"),
+    ):
         with pytest.raises(NotFoundError) as raised:
             find('nothing')
         assert known in str(raised.value)
@@ -185,10 +199,17 @@ def test_models_links_joints_plugins_and_sensors_are_dicts_by_name(world):
     robot = world.spawn(XACRO, 'robot', z=0.5, arguments={'laser': 'true', 'imu': 'true'})
     assert list(robot.sensors) == ['imu', 'laser']
     assert list(robot.plugins) == [
-        'differential_drive_controller', 'imu_controller', 'laser_controller']
-    for found, find in ((world.models, world.model), (robot.links, robot.link),
-                        (robot.joints, robot.joint), (robot.plugins, robot.plugin),
-                        (robot.sensors, robot.sensor)):
+        'differential_drive_controller',
+        'imu_controller',
+        'laser_controller',
+    ]
+    for found, find in (
+        (world.models, world.model),
+        (robot.links, robot.link),
+        (robot.joints, robot.joint),
+        (robot.plugins, robot.plugin),
+        (robot.sensors, robot.sensor),
+    ):
         assert found
         for name, one in found.items():
             assert one is find(name)
@@ -196,20 +217,34 @@ def test_models_links_joints_plugins_and_sensors_are_dicts_by_name(world):
 
 
 def test_plugins_and_sensors_of_one_name_have_different_keys(world):
-    push = '<plugin name="{}" filename="libgazebo_ros_force.so"><bodyName>b</bodyName>' \
+    push = (
+        '<plugin name="{}" filename="libgazebo_ros_force.so"><bodyName>b</bodyName>'
         '<topicName>t</topicName></plugin>'
+    )
     inner = '<plugin name="push" filename="libgazebo_ros_bumper.so"/>'
-    contact = '<sensor name="feel" type="contact">{}<contact><collision>c</collision></contact>' \
-        '</sensor>'
-    link = '<link name="{}"><collision name="c"><geometry><sphere><radius>0.1</radius></sphere>' \
+    contact = (
+        '<sensor name="feel" type="contact">{}<contact><collision>c</collision></contact></sensor>'
+    )
+    link = (
+        '<link name="{}"><collision name="c"><geometry><sphere><radius>0.1</radius></sphere>'
         '</geometry></collision>{}</link>'
+    )
     model = world.spawn(
-        '<sdf version="1.6"><model name="m">' + link.format('a', contact.format(inner))
-        + link.format('b', contact.format('')) + 3 * push.format('push') + push.format('')
-        + '</model></sdf>')
+        '<sdf version="1.6"><model name="m">'
+        + link.format('a', contact.format(inner))
+        + link.format('b', contact.format(''))
+        + 3 * push.format('push')
+        + push.format('')
+        + '</model></sdf>'
+    )
     assert [*model.sensors] == ['feel', 'b::feel']
     assert [*model.plugins] == [
-        'push', 'push_2', 'push_3', 'libgazebo_ros_force.so', 'a::feel::push']
+        'push',
+        'push_2',
+        'push_3',
+        'libgazebo_ros_force.so',
+        'a::feel::push',
+    ]
     assert len({*model.plugins.values()}) == 5
     for key, plugin in model.plugins.items():
         assert model.plugin(key) is plugin
@@ -287,8 +322,10 @@ def test_failed_load_of_a_world_closes_everything(tmp_path, monkeypatch):
 
     monkeypatch.setattr(World, 'close', close)
     file = tmp_path / 'broken.world'
-    file.write_text('<sdf version="1.6"><world name="w"><physics type="ode">'
-                    '<max_step_size>none</max_step_size></physics></world></sdf>')
+    file.write_text(
+        '<sdf version="1.6"><world name="w"><physics type="ode">'
+        '<max_step_size>none</max_step_size></physics></world></sdf>'
+    )
     with pytest.raises(ModelError, match='max_step_size'):
         World.from_file(file)
     assert len(closed) == 1
@@ -296,8 +333,10 @@ def test_failed_load_of_a_world_closes_everything(tmp_path, monkeypatch):
 
 def test_every_public_name_is_typed_and_documented():
     for name in sim.__all__:
-        rooms = [importlib.import_module(f'rosbots_description.sim.{room}')
-                 for room in ('core', 'description', 'runtime', 'public')]
+        rooms = [
+            importlib.import_module(f'rosbots_description.sim.{room}')
+            for room in ('core', 'description', 'runtime', 'public')
+        ]
         found = {id(getattr(room, name)) for room in rooms if name in room.__all__}
         assert {id(getattr(sim, name))} <= found
         assert getattr(sim, name).__doc__
@@ -306,8 +345,11 @@ def test_every_public_name_is_typed_and_documented():
 
 
 def test_import_of_an_error_or_a_pose_loads_no_engine():
-    code = 'import sys; from rosbots_description.sim import ModelError, Pose; ' \
+    code = (
+        'import sys; from rosbots_description.sim import ModelError, Pose; '
         "print([name for name in ('pybullet', 'numpy', 'lxml') if name in sys.modules])"
-    ended = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True,
-                           cwd=ROOT / 'src')
+    )
+    ended = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, check=True, cwd=ROOT / 'src'
+    )
     assert ended.stdout.strip() == '[]'

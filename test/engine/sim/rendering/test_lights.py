@@ -11,15 +11,24 @@ from rosbots_description.sim.description import DIRECTIONAL, POINT, SPOT, LightS
 from rosbots_description.sim.rendering import OVERVIEW, ImageCapture, Wants, look_at
 
 LENS = OVERVIEW._replace(width=80, height=60)
-FLOOR = box_urdf('8 8 0.2', 1.0, '<gazebo reference="box"><material>Gazebo/Grey</material>'
-                      '</gazebo>')
+FLOOR = box_urdf(
+    '8 8 0.2', 1.0, '<gazebo reference="box"><material>Gazebo/Grey</material></gazebo>'
+)
 DIM = (0.25, 0.25, 0.25, 1.0)
 SPECULAR = (0.1, 0.1, 0.1, 1.0)
 LIGHTS = [
     LightSpec('sun', DIRECTIONAL, diffuse=DIM, specular=SPECULAR),
     LightSpec('bulb', POINT, Pose((1.0, 1.0, 2.0)), (1.0, 1.0, 1.0, 1.0), SPECULAR),
-    LightSpec('torch', SPOT, Pose((-1.0, 0.0, 2.0)), (1.0, 1.0, 1.0, 1.0), SPECULAR,
-              spot_inner_angle=0.5, spot_outer_angle=1.2, spot_falloff=1.0),
+    LightSpec(
+        'torch',
+        SPOT,
+        Pose((-1.0, 0.0, 2.0)),
+        (1.0, 1.0, 1.0, 1.0),
+        SPECULAR,
+        spot_inner_angle=0.5,
+        spot_outer_angle=1.2,
+        spot_falloff=1.0,
+    ),
 ]
 
 

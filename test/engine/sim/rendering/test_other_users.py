@@ -52,14 +52,22 @@ def fixture_running():
         _, camera = spawn_robot(world, 'camera_320')
         world.spawn(robot_spec(), 'rosbots', Pose((0.0, 3.0, 0.5)))
         camera.read()
-        yield {'simulator': os.getpid(), 'renderer': renderer_of(world).process.process_id,
-               'sandbox': sandbox._children._server.process}
+        yield {
+            'simulator': os.getpid(),
+            'renderer': renderer_of(world).process.process_id,
+            'sandbox': sandbox._children._server.process,
+        }
     os.umask(before)
 
 
 def reached(attempt):
-    run = subprocess.run(['/usr/bin/python3', '-c', REACH.format(other=OTHER, attempt=attempt)],
-                         capture_output=True, text=True, check=False, cwd='/')
+    run = subprocess.run(
+        ['/usr/bin/python3', '-c', REACH.format(other=OTHER, attempt=attempt)],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd='/',
+    )
     assert run.stdout.startswith('begun'), run.stderr
     return 'reached' in run.stdout
 
@@ -86,15 +94,21 @@ def sockets(process):
 def test_no_socket_of_a_process_has_a_name(running, process):
     inodes = sockets(running[process])
     assert inodes
-    named = {fields[6]: fields[7] for line in Path('/proc/net/unix').read_text().splitlines()[1:]
-             if len(fields := line.split()) > 7}
+    named = {
+        fields[6]: fields[7]
+        for line in Path('/proc/net/unix').read_text().splitlines()[1:]
+        if len(fields := line.split()) > 7
+    }
     assert not inodes & named.keys()
 
 
 def test_no_process_listens_on_the_network(running):
-    listening = {line.split()[9] for table in ('tcp', 'tcp6')
-                 for line in Path(f'/proc/net/{table}').read_text().splitlines()[1:]
-                 if line.split()[3] == '0A'}
+    listening = {
+        line.split()[9]
+        for table in ('tcp', 'tcp6')
+        for line in Path(f'/proc/net/{table}').read_text().splitlines()[1:]
+        if line.split()[3] == '0A'
+    }
     for process in running.values():
         assert not sockets(process) & listening
 
@@ -142,8 +156,9 @@ def test_saved_world_does_not_follow_a_planted_link(tmp_path):
     assert not (tmp_path / 'absent').exists()
 
 
-@pytest.mark.parametrize('content', [
-    pickle.dumps({'world': 'default'}), b'\x80\x04\x95', b'cos\nsystem\n(S"id"\ntR.'])
+@pytest.mark.parametrize(
+    'content', [pickle.dumps({'world': 'default'}), b'\x80\x04\x95', b'cos\nsystem\n(S"id"\ntR.']
+)
 def test_world_file_is_never_unpickled(tmp_path, content):
     from rosbots_description.sim import SimError, World
 

@@ -42,15 +42,17 @@ class Box:
 
     @property
     def corners(self):
-        return self.middle + self.half * [[x, y, z] for x in (-1, 1) for y in (-1, 1)
-                                          for z in (-1, 1)]
+        return self.middle + self.half * [
+            [x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)
+        ]
 
 
 @pytest.fixture
 def boxes():
     draw = np.random.default_rng(7)
-    return [Box(draw.uniform((-2, -3, 0.3), (5, 3, 1.5)), draw.uniform(0.05, 1.0, 3))
-            for _ in range(12)]
+    return [
+        Box(draw.uniform((-2, -3, 0.3), (5, 3, 1.5)), draw.uniform(0.05, 1.0, 3)) for _ in range(12)
+    ]
 
 
 def points_of(boxes):
@@ -90,8 +92,11 @@ def test_a_shadow_reaches_the_sphere_into_which_it_falls(boxes):
 def test_what_a_camera_sees_is_within_the_hull_of_five_points(field_of_view):
     lens = Lens(*SIZE, field_of_view, 0.1, 20.0)
     eye = matrices(np.array([[1.0, -2.0, 0.5, *from_rpy(0.2, 0.6, 2.0)]]))[0]
-    ways = np.random.default_rng(10).uniform(-1.0, 1.0, (500, 2)) \
-        * np.tan(field_of_view / 2.0) * (1.0, SIZE[1] / SIZE[0])
+    ways = (
+        np.random.default_rng(10).uniform(-1.0, 1.0, (500, 2))
+        * np.tan(field_of_view / 2.0)
+        * (1.0, SIZE[1] / SIZE[0])
+    )
     reach = np.random.default_rng(11).uniform(0.1, 20.0, 500)
     points = eye[:3, 3] + reach[:, None] * (np.insert(ways, 0, 1.0, axis=1) @ eye[:3, :3].T)
     hull = view_corners(eye, lens)
@@ -111,23 +116,44 @@ def test_a_shadow_map_without_what_no_picture_shows_gives_the_same_picture(monke
     poses[:, 3:] = from_rpy(0.0, 0.0, yaw)
     x, y, z = draw.uniform((-0.7, -0.3, 0.2), (-0.3, 0.3, 0.9), (8, 3)).T
     poses[1:, :3] = np.stack(
-        (x * np.cos(yaw) - y * np.sin(yaw), x * np.sin(yaw) + y * np.cos(yaw), z), axis=1)
+        (x * np.cos(yaw) - y * np.sin(yaw), x * np.sin(yaw) + y * np.cos(yaw), z), axis=1
+    )
     look = Appearance((0.8,) * 3, (0.8,) * 3, (0.0,) * 3, 0.0, (0.0,) * 3, 1.0)
-    renderer.set_scene(Scene(
-        (ScenePart('ground', 0, np.diag((50.0, 50.0, 1.0, 1.0)).tobytes(), look, False, True),
-         *(ScenePart('box', body, np.diag((1.0, 1.0, 0.05, 1.0)).tobytes(), look)
-           for body in range(1, 9))),
-        (Light(DIRECTIONAL, (0.0, 0.0, 5.0), tuple(LIGHT.tolist()), (0.8,) * 3, (0.0,) * 3, 100.0,
-               (1.0, 0.0, 0.0), (1.0, 0.0, 1.0), True),)))
+    renderer.set_scene(
+        Scene(
+            (
+                ScenePart(
+                    'ground', 0, np.diag((50.0, 50.0, 1.0, 1.0)).tobytes(), look, False, True
+                ),
+                *(
+                    ScenePart('box', body, np.diag((1.0, 1.0, 0.05, 1.0)).tobytes(), look)
+                    for body in range(1, 9)
+                ),
+            ),
+            (
+                Light(
+                    DIRECTIONAL,
+                    (0.0, 0.0, 5.0),
+                    tuple(LIGHT.tolist()),
+                    (0.8,) * 3,
+                    (0.0,) * 3,
+                    100.0,
+                    (1.0, 0.0, 0.0),
+                    (1.0, 0.0, 1.0),
+                    True,
+                ),
+            ),
+        )
+    )
     eye = np.array([0.0, 0.0, 0.7, *from_rpy(0.0, 0.5, yaw)])
     lens = Lens(*SIZE, 1.04, 0.1, 50.0)
     cut = renderer.colours(lens, eye, poses).copy()
-    one, = renderer._shadows._moving.values()
+    (one,) = renderer._shadows._moving.values()
     _, _, width, height = one._buffer.scissor
     monkeypatch.setattr(shadows, 'view_corners', lambda *_: np.array([[-1e3] * 3, [1e3] * 3]))
     whole = renderer.colours(lens, eye, poses)
     assert one._buffer.scissor == (0, 0, one.size, one.size)
     assert np.array_equal(cut, whole)
-    assert yaw > 0.0 or width * height < 0.7 * one.size ** 2  # the sun is ahead on the left
+    assert yaw > 0.0 or width * height < 0.7 * one.size**2  # the sun is ahead on the left
     assert cut[..., 0].min() < 100  # shade
     assert cut[..., 0].max() > 200  # light

@@ -61,7 +61,7 @@ def submeshes(path):
     data = Path(path).read_bytes()
     head = struct.pack('<H', 0x1000) + b'[MeshSerializer_v1.100]\n'
     assert data.startswith(head)
-    ((number, mesh),) = chunks(data[len(head):])
+    ((number, mesh),) = chunks(data[len(head) :])
     assert (number, mesh[0]) == (0x3000, 0)
     for number, content in chunks(mesh[1:]):
         if number == 0x9000:
@@ -71,23 +71,29 @@ def submeshes(path):
         shared, count, wide = struct.unpack_from('<?I?', rest)
         assert (shared, wide) == (False, True)
         faces = np.frombuffer(rest, '<u4', count, 6).reshape(-1, 3)
-        (_, geometry), (_, operation) = chunks(rest[6 + 4 * count:])
+        (_, geometry), (_, operation) = chunks(rest[6 + 4 * count :])
         assert operation == struct.pack('<H', 4)
         (vertices,) = struct.unpack_from('<I', geometry)
         (_, elements), (_, buffer) = chunks(geometry[4:])
         assert [struct.unpack('<5H', one)[1:4] for _, one in chunks(elements)] == [
-            (2, 1, 0), (2, 4, 12), (11, 5, 24)]
+            (2, 1, 0),
+            (2, 4, 12),
+            (11, 5, 24),
+        ]
         ((_, rows),) = chunks(buffer[4:])
         table = np.frombuffer(rows, [('p', '<f4', 3), ('n', '<f4', 3), ('c', 'u1', 4)])
         assert len(table) == vertices
         yield material.decode(), *(table[name][faces].astype(float) for name in 'pnc')
 
 
-@pytest.mark.parametrize(('geometry', 'area'), [
-    (Box((1.0, 2.0, 3.0)), 6.0), (Cylinder(0.5, 2.0), 1.5 * np.pi), (Sphere(3.0), np.pi)])
+@pytest.mark.parametrize(
+    ('geometry', 'area'),
+    [(Box((1.0, 2.0, 3.0)), 6.0), (Cylinder(0.5, 2.0), 1.5 * np.pi), (Sphere(3.0), np.pi)],
+)
 def test_unit_shape_has_outward_faces_and_normals(meshes, geometry, area):
     ((material, corners, normals, colours),) = submeshes(
-        meshes.file(Visual('v', geometry, material=RED)))
+        meshes.file(Visual('v', geometry, material=RED))
+    )
     assert material == 'rosbots/sunlit'
     assert (colours == (255, 51, 0, 255)).all()
     assert corners.max() == 0.5
@@ -108,15 +114,15 @@ def test_materials_are_those_exported_to_rviz():
 
 
 def test_transparent_mesh_has_the_transparent_material(meshes):
-    ((material, _, _, colours),) = submeshes(
-        meshes.file(Visual('v', Sphere(1.0), material=GLASS)))
+    ((material, _, _, colours),) = submeshes(meshes.file(Visual('v', Sphere(1.0), material=GLASS)))
     assert material == 'rosbots/sunlit_transparent'
     assert colours[0, 0].tolist() == [0, 0, 255, 102]
 
 
 def test_mesh_keeps_its_colours_and_gets_missing_normals(meshes, obj):
-    red, blue = submeshes(meshes.file(Visual('v', Mesh(obj(
-        'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n')))))
+    red, blue = submeshes(
+        meshes.file(Visual('v', Mesh(obj('newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n'))))
+    )
     assert [part[3][0, 0].tolist() for part in (red, blue)] == [[255, 0, 0, 255], [0, 0, 255, 255]]
     assert red[1][0].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
     assert red[2][0].tolist() == [[0, 0, 1]] * 3

@@ -10,10 +10,13 @@ BOX = urdf_spec(box_urdf('1 1 1', 1.0))
 STANDING = Pose((5.0, 0.0, 0.5))
 
 
-@pytest.mark.parametrize('lose', [
-    lambda model: model.set_pose(Pose((1e308, 0.0, 0.5))),
-    lambda model: model.set_twist(Twist((1e308, 0.0, 0.0), (0.0, 0.0, 0.0))),
-])
+@pytest.mark.parametrize(
+    'lose',
+    [
+        lambda model: model.set_pose(Pose((1e308, 0.0, 0.5))),
+        lambda model: model.set_twist(Twist((1e308, 0.0, 0.0), (0.0, 0.0, 0.0))),
+    ],
+)
 def test_diverged_model_deleted_before_its_detection_affects_no_other(lose):
     with empty_world() as world:
         neighbour = world.spawn(BOX, 'neighbour', STANDING)

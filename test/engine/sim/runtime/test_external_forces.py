@@ -51,7 +51,8 @@ def test_force_at_a_point_has_a_lever_arm():
         model = world.spawn(free_body(), 'body', HIGH)
         x, y, z = HIGH.position
         world.engine.apply_wrench(
-            model.body, 'link', (0.0, 5.0, 0.0), (0.0, 0.0, 0.0), (x + 2.0, y, z))
+            model.body, 'link', (0.0, 5.0, 0.0), (0.0, 0.0, 0.0), (x + 2.0, y, z)
+        )
         world.run(1)
         assert model.twist.linear == pytest.approx((0.0, 0.005, 0.0), abs=1e-6)
         assert model.twist.angular == pytest.approx((0.0, 0.0, 0.01 / MOMENTS[2]), rel=1e-3)
@@ -123,7 +124,8 @@ def test_combined_steps_of_a_damped_joint_are_identical_to_single_ones():
     spec = urdf_spec(
         f'<link name="world"/>{bar}<joint name="j" type="continuous"><parent link="world"/>'
         f'<child link="bar"/><origin xyz="0 0 2"/><axis xyz="0 1 0"/>'
-        '<dynamics damping="0.7"/></joint>')
+        '<dynamics damping="0.7"/></joint>'
+    )
     seen = []
     for run in (1, 3, 93):
         with empty_world() as world:

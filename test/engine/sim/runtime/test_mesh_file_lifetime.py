@@ -12,15 +12,16 @@ from support.bench import Bench
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
 
-MESH_COLLISION = '''<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"
-iyz="0"/></inertial><collision><geometry><mesh filename="file://{}"/></geometry></collision>'''
+MESH_COLLISION = """<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"
+iyz="0"/></inertial><collision><geometry><mesh filename="file://{}"/></geometry></collision>"""
 TETRAHEDRON = 'v 0 0 0\nv {0} 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n'
 
 
 def mesh_spec(path, size):
     path.write_text(TETRAHEDRON.format(size))
-    return urdf_spec(box_urdf('1 1 1', 1.0).replace(
-        '<box size="1 1 1"/>', f'<mesh filename="file://{path}"/>'))
+    return urdf_spec(
+        box_urdf('1 1 1', 1.0).replace('<box size="1 1 1"/>', f'<mesh filename="file://{path}"/>')
+    )
 
 
 def test_mesh_files_are_removed_with_the_last_model_that_uses_them(tmp_path, monkeypatch):
@@ -49,8 +50,12 @@ def test_spawn_by_service_keeps_files_only_as_long_as_its_model(tmp_path, monkey
     with empty_world() as world:
         bench = Bench(world)
         for _ in range(3):
-            assert bench.call('spawn_urdf_model', SpawnModelRequest(
-                'part', xml.format(tmp_path / 'part.obj'), '/', InitialPose(), '')).success
+            assert bench.call(
+                'spawn_urdf_model',
+                SpawnModelRequest(
+                    'part', xml.format(tmp_path / 'part.obj'), '/', InitialPose(), ''
+                ),
+            ).success
             (folder,) = tmp_path.glob('rosbots_meshes_*')
             assert len(list(folder.iterdir())) == 1
             assert bench.call('delete_model', DeleteModelRequest('part')).success
@@ -81,6 +86,7 @@ def test_rejected_model_leaves_no_mesh_file(tmp_path, monkeypatch):
     (tmp_path / 'scratch').mkdir()
     spec = mesh_spec(tmp_path / 'part.obj', 1)
     with empty_world() as world:
+
         def fails(*_):
             raise ModelError('no')
 

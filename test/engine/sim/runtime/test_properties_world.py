@@ -81,8 +81,13 @@ class WorldInvariants(RuleBasedStateMachine):
         position = self.call('get_model_state', GetModelStateRequest(model_name=name)).pose.position
         return position.x, position.y, position.z
 
-    @rule(name=st.sampled_from(NAMES), kind=st.sampled_from(sorted(DESCRIPTIONS)),
-          x=POSITIONS, y=POSITIONS, z=HEIGHTS)
+    @rule(
+        name=st.sampled_from(NAMES),
+        kind=st.sampled_from(sorted(DESCRIPTIONS)),
+        x=POSITIONS,
+        y=POSITIONS,
+        z=HEIGHTS,
+    )
     def spawn(self, name, kind, x, y, z):
         request = SpawnModelRequest(model_name=name, model_xml=DESCRIPTIONS[kind])
         position = request.initial_pose.position

@@ -175,19 +175,23 @@ def test_model_is_spawned_without_an_unknown_plugin(caplog):
         assert model.left_out == ["plugin 'libnope.so'"]
     assert caplog.messages == [
         "model 'b', plugin 'p': unknown library 'libnope.so'; nothing is loaded "
-        'from GAZEBO_PLUGIN_PATH; see doc/gazebo_compatibility.md']
+        'from GAZEBO_PLUGIN_PATH; see doc/gazebo_compatibility.md'
+    ]
 
 
 def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
     plugin = PluginSpec('imu', 'libgazebo_ros_elevator.so', Element('plugin'))
     with empty_world() as world:
         model = world.spawn(
-            replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose())
+            replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose()
+        )
         assert model.left_out == ["plugin 'libgazebo_ros_elevator.so'"]
     ((level, sentence),) = [(r.levelname, r.getMessage()) for r in caplog.records]
     assert (level, sentence) == (
-        'WARNING', "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported "
-        'yet; see doc/gazebo_compatibility.md')
+        'WARNING',
+        "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported "
+        'yet; see doc/gazebo_compatibility.md',
+    )
 
 
 def test_model_is_spawned_without_a_failing_plugin(caplog):

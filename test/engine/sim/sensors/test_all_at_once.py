@@ -10,17 +10,34 @@ from support.sensing import RECORDED, ROBOTS
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.public.world import World
 
-NOISY = ('laser_noise', 'laser_block', 'range_noise_ir', 'imu_sensor_noise', 'imu_model_noise',
-         'bumper', 'camera_noise', 'multicamera', 'openni_kinect', 'skid4_p3d', 'tricycle',
-         'planar', 'arm_ft')
+NOISY = (
+    'laser_noise',
+    'laser_block',
+    'range_noise_ir',
+    'imu_sensor_noise',
+    'imu_model_noise',
+    'bumper',
+    'camera_noise',
+    'multicamera',
+    'openni_kinect',
+    'skid4_p3d',
+    'tricycle',
+    'planar',
+    'arm_ft',
+)
 # Periods [ms] of outputs of those of the recording, and of others.
 PERIODS = {
-    'laser_nonoise': {'scan': [25]}, 'imu_sensor': {'imu': [10]}, 'imu_model': {'imu': [20]},
-    'bumper': {'contacts': [20]}, 'range': {'range': [100]}, 'arm_ft': {'wrench': [10]},
+    'laser_nonoise': {'scan': [25]},
+    'imu_sensor': {'imu': [10]},
+    'imu_model': {'imu': [20]},
+    'bumper': {'contacts': [20]},
+    'range': {'range': [100]},
+    'arm_ft': {'wrench': [10]},
     'camera_320': {'image': [33, 34], 'camera_info': [33, 34]},
     'openni_kinect': {'depth': [100], 'points': [100], 'depth_camera_info': [100]},
     'skid4_p3d': {'odometry': [10, 20, 34, 1], 'joint_states': [50]},
-    'tricycle': {'odometry': [20], 'joint_states': [20]}, 'planar': {'odometry': [51]},
+    'tricycle': {'odometry': [20], 'joint_states': [20]},
+    'planar': {'odometry': [51]},
 }
 
 
@@ -30,14 +47,21 @@ def spawn_all(world, robots, are_read=True):
     for number, name in enumerate(robots):
         file = ROBOTS / f'{name}.urdf'
         text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text('utf-8')
-        model = world.spawn(load_urdf(text, name, robot_namespace='/')[0], name,
-                            y=3.0 * (number - len(robots) // 2), z=0.02)
+        model = world.spawn(
+            load_urdf(text, name, robot_namespace='/')[0],
+            name,
+            y=3.0 * (number - len(robots) // 2),
+            z=0.02,
+        )
         for plugin in model.plugins.values():
             if hasattr(plugin, 'target'):
                 plugin.command(0.4, 0.3)
             for output, readings in plugin.outputs.items() if are_read else ():
-                readings.connect(lambda reading, key=(name, plugin.spec.name, output): found.append(
-                    (key, world.clock.now_ns // 10**6, pickle.dumps(reading))))
+                readings.connect(
+                    lambda reading, key=(name, plugin.spec.name, output): found.append(
+                        (key, world.clock.now_ns // 10**6, pickle.dumps(reading))
+                    )
+                )
     return found
 
 
@@ -69,8 +93,9 @@ def test_readings_after_a_reset_are_bit_identical(world):
     world.run(200)
     assert {key for key, _, _ in found} == {key for key, _, _ in first}
     assert [entry[:2] for entry in found] == [entry[:2] for entry in first]
-    differing = {key for (key, _, one), (_, _, other) in zip(first, found, strict=True)
-                 if one != other}
+    differing = {
+        key for (key, _, one), (_, _, other) in zip(first, found, strict=True) if one != other
+    }
     assert differing == set()
 
 
@@ -85,8 +110,9 @@ def test_from_a_saved_state_everything_is_measured_again_bit_by_bit(world):
     found.clear()
     world.run(150)
     assert [entry[:2] for entry in found] == [entry[:2] for entry in first]
-    differing = {key for (key, _, one), (_, _, other) in zip(first, found, strict=True)
-                 if one != other}
+    differing = {
+        key for (key, _, one), (_, _, other) in zip(first, found, strict=True) if one != other
+    }
     assert differing == set()
 
 

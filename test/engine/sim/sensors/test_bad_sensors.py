@@ -37,33 +37,59 @@ def spawn(world, robot, old='', new=''):
     return model, times
 
 
-@pytest.mark.parametrize(('robot', 'old', 'new', 'sentence'), [
-    (LASER, '<samples>720<', '<samples>0<', f'line 14: <samples> is 0; {RAYS}'),
-    (LASER, '<samples>720<', '<samples>-7<', f'line 14: <samples> is -7; {RAYS}'),
-    (LASER, '<samples>720<', '<samples>2000000<', RAYS),
-    (LASER, '<resolution>1<', '<resolution>0<', '<resolution> is 0; with 720 <samples>'),
-    (LASER, '<resolution>1<', '<resolution>1e9<', 'it must give 1 to 1000000 ranges'),
-    (LASER, '</horizontal>', '</horizontal><vertical><samples>9999</samples></vertical>',
-     '7199280 rays; at most 1000000 are cast'),
-    (LASER, '<min>0.1<', '<min>31<', '<range> is from 31 to 30 m; it must begin at 0 or more'),
-    (LASER, '<min>0.1<', '<min>-1<', '<range> is from -1 to 30 m; it must begin at 0 or more'),
-    (LASER, '<max>30<', '<max>1e39<', '<range> is from 0.1 to 1e+39 m; it must begin at 0 or more '
-     'and end beyond, at most at 3.40282e+38, which is all that a scan can hold'),
-    (RANGE, '<max>4<', '<max>1e308<', '<range> is from 0.01 to 1e+308 m; it must begin'),
-    (RANGE, '<fov>0.28<', '<fov>-1e39<', '<fov> is -1e+39 rad; it must lie between -100 and 100'),
-    (LASER, '<max>30<', '<max>nan<', "<max> is 'nan'; it takes a finite number"),
-    (LASER, '<max_angle>1.5708<', '<max_angle>1e9<',
-     '<max_angle> is 1e+09 rad; it must lie between -100 and 100'),
-    (LASER, '</ray>', NOISE.format('NaN'), "<stddev> is 'NaN'; it takes a finite number"),
-    (LASER, '</ray>', NOISE.format('-1'), '<stddev> of <noise> is -1; it must not be negative'),
-    (LASER, '<update_rate>40<', '<update_rate>1e-12<', '<update_rate> is 1e-12 Hz; it must be'),
-    (IMU, '<updateRateHZ>100<', '<updateRateHZ>nan<', "<updateRateHZ> is 'nan'; it takes a finite"),
-    (IMU, '<gaussianNoise>0<', '<gaussianNoise>NaN<', "<gaussianNoise> is 'NaN'; it takes a"),
-    (IMU, '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
-    (ARM, '<updateRate>100.0<', '<updateRate>nan<', "<updateRate> is 'nan'; it takes a finite"),
-    (ARM, '<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
-    (ARM, '<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
-])
+@pytest.mark.parametrize(
+    ('robot', 'old', 'new', 'sentence'),
+    [
+        (LASER, '<samples>720<', '<samples>0<', f'line 14: <samples> is 0; {RAYS}'),
+        (LASER, '<samples>720<', '<samples>-7<', f'line 14: <samples> is -7; {RAYS}'),
+        (LASER, '<samples>720<', '<samples>2000000<', RAYS),
+        (LASER, '<resolution>1<', '<resolution>0<', '<resolution> is 0; with 720 <samples>'),
+        (LASER, '<resolution>1<', '<resolution>1e9<', 'it must give 1 to 1000000 ranges'),
+        (
+            LASER,
+            '</horizontal>',
+            '</horizontal><vertical><samples>9999</samples></vertical>',
+            '7199280 rays; at most 1000000 are cast',
+        ),
+        (LASER, '<min>0.1<', '<min>31<', '<range> is from 31 to 30 m; it must begin at 0 or more'),
+        (LASER, '<min>0.1<', '<min>-1<', '<range> is from -1 to 30 m; it must begin at 0 or more'),
+        (
+            LASER,
+            '<max>30<',
+            '<max>1e39<',
+            '<range> is from 0.1 to 1e+39 m; it must begin at 0 or more '
+            'and end beyond, at most at 3.40282e+38, which is all that a scan can hold',
+        ),
+        (RANGE, '<max>4<', '<max>1e308<', '<range> is from 0.01 to 1e+308 m; it must begin'),
+        (
+            RANGE,
+            '<fov>0.28<',
+            '<fov>-1e39<',
+            '<fov> is -1e+39 rad; it must lie between -100 and 100',
+        ),
+        (LASER, '<max>30<', '<max>nan<', "<max> is 'nan'; it takes a finite number"),
+        (
+            LASER,
+            '<max_angle>1.5708<',
+            '<max_angle>1e9<',
+            '<max_angle> is 1e+09 rad; it must lie between -100 and 100',
+        ),
+        (LASER, '</ray>', NOISE.format('NaN'), "<stddev> is 'NaN'; it takes a finite number"),
+        (LASER, '</ray>', NOISE.format('-1'), '<stddev> of <noise> is -1; it must not be negative'),
+        (LASER, '<update_rate>40<', '<update_rate>1e-12<', '<update_rate> is 1e-12 Hz; it must be'),
+        (
+            IMU,
+            '<updateRateHZ>100<',
+            '<updateRateHZ>nan<',
+            "<updateRateHZ> is 'nan'; it takes a finite",
+        ),
+        (IMU, '<gaussianNoise>0<', '<gaussianNoise>NaN<', "<gaussianNoise> is 'NaN'; it takes a"),
+        (IMU, '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
+        (ARM, '<updateRate>100.0<', '<updateRate>nan<', "<updateRate> is 'nan'; it takes a finite"),
+        (ARM, '<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
+        (ARM, '<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
+    ],
+)
 def test_invalid_sensor_is_left_out_with_an_error(world, caplog, robot, old, new, sentence):
     model, times = spawn(world, robot, old, new)
     world.run(30)
@@ -74,29 +100,32 @@ def test_invalid_sensor_is_left_out_with_an_error(world, caplog, robot, old, new
     assert model.name in world.models
 
 
-@pytest.mark.parametrize(('robot', 'old', 'new', 'expected'), [
-    (LASER, '<samples>720<', '<samples>1<', [25]),
-    (LASER, '<update_rate>40<', '<update_rate>0<', [*range(1, 31)]),
-    (LASER, '<update_rate>40<', '<update_rate>-3<', [*range(1, 31)]),
-    (LASER, '<update_rate>40<', '<update_rate>1e9<', [*range(1, 31)]),
-    (LASER, '<update_rate>40</update_rate>', '', [*range(1, 31)]),
-    (LASER, '<topicName>/scan</topicName>', '', [25]),
-    (LASER, '<topicName>/scan<', '<topicName><', []),
-    (LASER, '<frameName>laser_link</frameName>', '', [25]),
-    (LASER, '<max_angle>1.5708<', '<max_angle>-2<', [25]),
-    (LASER, '</ray>', NOISE.format('1e300'), [25]),
-    (IMU, '<updateRateHZ>100<', '<updateRateHZ>0<', [10, 20, 30]),  # at most that of the sensor
-    (IMU, '<updateRateHZ>100<', '<updateRateHZ>-2<', [10, 20, 30]),
-    (IMU, '<updateRateHZ>100<', '<updateRateHZ>1e9<', [10, 20, 30]),
-    (IMU, '<update_rate>100<', '<update_rate>0<', [10, 20, 30]),
-    (IMU, '<topicName>imu/data</topicName>', '', [10, 20, 30]),
-    (BUMPER, '<update_rate>50<', '<update_rate>0<', [*range(1, 31)]),
-    (BUMPER, '<update_rate>50<', '<update_rate>-1<', [*range(1, 31)]),
-    (BUMPER, '<bumperTopicName>bumper</bumperTopicName>', '', [20]),
-    (BUMPER, '<frameName>base_link</frameName>', '', [20]),
-    (ARM, '<updateRate>100.0<', '<updateRate>0<', None),
-    (ARM, '<updateRate>100.0<', '<updateRate>-1<', None),
-])
+@pytest.mark.parametrize(
+    ('robot', 'old', 'new', 'expected'),
+    [
+        (LASER, '<samples>720<', '<samples>1<', [25]),
+        (LASER, '<update_rate>40<', '<update_rate>0<', [*range(1, 31)]),
+        (LASER, '<update_rate>40<', '<update_rate>-3<', [*range(1, 31)]),
+        (LASER, '<update_rate>40<', '<update_rate>1e9<', [*range(1, 31)]),
+        (LASER, '<update_rate>40</update_rate>', '', [*range(1, 31)]),
+        (LASER, '<topicName>/scan</topicName>', '', [25]),
+        (LASER, '<topicName>/scan<', '<topicName><', []),
+        (LASER, '<frameName>laser_link</frameName>', '', [25]),
+        (LASER, '<max_angle>1.5708<', '<max_angle>-2<', [25]),
+        (LASER, '</ray>', NOISE.format('1e300'), [25]),
+        (IMU, '<updateRateHZ>100<', '<updateRateHZ>0<', [10, 20, 30]),  # at most that of the sensor
+        (IMU, '<updateRateHZ>100<', '<updateRateHZ>-2<', [10, 20, 30]),
+        (IMU, '<updateRateHZ>100<', '<updateRateHZ>1e9<', [10, 20, 30]),
+        (IMU, '<update_rate>100<', '<update_rate>0<', [10, 20, 30]),
+        (IMU, '<topicName>imu/data</topicName>', '', [10, 20, 30]),
+        (BUMPER, '<update_rate>50<', '<update_rate>0<', [*range(1, 31)]),
+        (BUMPER, '<update_rate>50<', '<update_rate>-1<', [*range(1, 31)]),
+        (BUMPER, '<bumperTopicName>bumper</bumperTopicName>', '', [20]),
+        (BUMPER, '<frameName>base_link</frameName>', '', [20]),
+        (ARM, '<updateRate>100.0<', '<updateRate>0<', None),
+        (ARM, '<updateRate>100.0<', '<updateRate>-1<', None),
+    ],
+)
 def test_irregular_values_accepted_by_gazebo_work(world, caplog, robot, old, new, expected):
     _, times = spawn(world, robot, old, new)
     world.run(30)
@@ -120,8 +149,10 @@ def test_error_about_an_unknown_collision_lists_the_known_ones(world, caplog):
 def test_scan_of_a_million_rays_gives_a_warning(world, caplog):
     with caplog.at_level(logging.WARNING):
         _, times = spawn(world, LASER, '<samples>720<', '<samples>1000000<')
-    assert '1000000 rays, with those of all other sensors, take long; the simulation waits for ' \
+    assert (
+        '1000000 rays, with those of all other sensors, take long; the simulation waits for '
         'each scan' in caplog.text
+    )
     world.run(30)
     assert times == [25]
 
@@ -129,8 +160,10 @@ def test_scan_of_a_million_rays_gives_a_warning(world, caplog):
 def spawn_lasers(world, numbers, samples):
     text = (ROBOTS / f'{LASER}.urdf').read_text('utf-8')
     text = text.replace('<samples>720<', f'<samples>{samples}<')
-    return [world.spawn(load_urdf(text, f'bot{one}')[0], f'bot{one}', x=30.0 + 3.0 * one)
-            for one in numbers]
+    return [
+        world.spawn(load_urdf(text, f'bot{one}')[0], f'bot{one}', x=30.0 + 3.0 * one)
+        for one in numbers
+    ]
 
 
 def test_sum_of_all_rays_gives_a_warning_whenever_it_has_doubled(world, caplog):
@@ -147,12 +180,14 @@ def test_sum_of_all_rays_gives_a_warning_whenever_it_has_doubled(world, caplog):
 def test_sum_of_all_rays_is_limited_until_models_are_deleted(world, caplog):
     spawn_lasers(world, range(5), 1_000_000)
     assert 'spawned without it' not in caplog.text
-    refused, = spawn_lasers(world, [5], 1000)
-    assert 'the sensors of this world would cast 5001000 rays with it; at most 5000000 are cast' \
+    (refused,) = spawn_lasers(world, [5], 1000)
+    assert (
+        'the sensors of this world would cast 5001000 rays with it; at most 5000000 are cast'
         in caplog.text
+    )
     assert not refused.sensors
     world.delete('bot0')
-    accepted, = spawn_lasers(world, [6], 1000)
+    (accepted,) = spawn_lasers(world, [6], 1000)
     assert accepted.sensors
 
 

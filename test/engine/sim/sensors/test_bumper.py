@@ -13,9 +13,11 @@ from rosbots_description.sim.public.world import World
 OWN = 'bbot::base_footprint::base_footprint_fixed_joint_lump__base_link_collision'
 GROUND, WALL = 'ground_plane::link::collision', 'wall_1::link::c'
 CLOSE = 0.02  # permitted relative error of a force by the solver
-BOX = ('<sdf version="1.6"><model name="top"><link name="link"><inertial><mass>2</mass></inertial>'
-       '<collision name="c"><geometry><box><size>.2 .2 .2</size></box></geometry></collision>'
-       '</link></model></sdf>')
+BOX = (
+    '<sdf version="1.6"><model name="top"><link name="link"><inertial><mass>2</mass></inertial>'
+    '<collision name="c"><geometry><box><size>.2 .2 .2</size></box></geometry></collision>'
+    '</link></model></sdf>'
+)
 
 
 @pytest.fixture
@@ -30,7 +32,8 @@ def spawn(world, robot='bumper', settled=500, **place):
     world.run(settled)
     found = []
     model.plugin('bumper').outputs['contacts'].connect(
-        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading))
+    )
     return model, found
 
 
@@ -63,12 +66,14 @@ def test_message_has_the_text_and_totals_of_gazebos(world):
     world.run(20)
     message = contacts_message(found[0][1])
     first = message.states[0]
-    assert first.info == (f'Debug:  i:(0/20)     my geom:{OWN}   other geom:{GROUND}'
-                          '         time:0.501000000\n')
+    assert first.info == (
+        f'Debug:  i:(0/20)     my geom:{OWN}   other geom:{GROUND}         time:0.501000000\n'
+    )
     assert (first.collision1_name, first.collision2_name) == (OWN, GROUND)
     assert len(first.wrenches) == len(first.contact_positions) == len(first.depths)
     assert first.total_wrench.force.z == pytest.approx(
-        sum(wrench.force.z for wrench in first.wrenches))
+        sum(wrench.force.z for wrench in first.wrenches)
+    )
 
 
 def test_every_step_gives_a_message_without_a_rate(world):
@@ -85,9 +90,14 @@ def test_message_without_contacts_is_sent(world):
     assert counts[-1] == 20
 
 
-@pytest.mark.parametrize(('yaw', 'push'), [
-    (0.0, (-1.0, 0.0)), (math.pi, (1.0, 0.0)), (math.pi / 2, (0.0, 1.0)),
-])
+@pytest.mark.parametrize(
+    ('yaw', 'push'),
+    [
+        (0.0, (-1.0, 0.0)),
+        (math.pi, (1.0, 0.0)),
+        (math.pi / 2, (0.0, 1.0)),
+    ],
+)
 def test_force_of_a_wall_is_in_the_axes_of_the_link(world, yaw, push):
     x = 7.9 - (0.15 if yaw == math.pi / 2 else 0.2)  # its front is at the wall
     model, found = spawn(world, x=x, yaw=yaw)
@@ -96,8 +106,9 @@ def test_force_of_a_wall_is_in_the_axes_of_the_link(world, yaw, push):
     touches = [touch for _, reading in found[-10:] for touch in reading]
     assert {touch.first for touch in touches} == {OWN}
     force = total(touches) / 200  # steps; how wall and ground share it is the solver's choice
-    assert force == pytest.approx((80.0 * push[0], 80.0 * push[1], weight_of(model)), rel=CLOSE,
-                                  abs=1.0)
+    assert force == pytest.approx(
+        (80.0 * push[0], 80.0 * push[1], weight_of(model)), rel=CLOSE, abs=1.0
+    )
     of_wall = [touch for touch in touches if touch.second == WALL]
     assert total(of_wall)[:2] @ np.array(push) > 25.0 * 200
     for point in of_wall[-1].points:
@@ -110,7 +121,9 @@ def test_lesser_body_is_the_first_of_a_pair(world):
     world.run(1000)
     touches = found[-1][1]
     assert {(touch.first, touch.second) for touch in touches} == {
-        ('top::link::c', OWN), (OWN, GROUND)}
+        ('top::link::c', OWN),
+        (OWN, GROUND),
+    }
     on_top = [touch for touch in touches if touch.first != OWN]
     assert total(on_top)[2] / len(on_top) == pytest.approx(2 * 9.8, rel=CLOSE)
     assert on_top[0].points[0].normal == pytest.approx((0.0, 0.0, 1.0), abs=1e-3)
@@ -127,12 +140,15 @@ def cube(name, size, z, *, static=False):
           <plugin name="bumper" filename="libgazebo_ros_bumper.so"/></sensor></link></model>"""
 
 
-@pytest.mark.parametrize(('below', 'above', 'first'), [
-    (('lower', 0.9, 0.45), ('upper', 0.6, 1.2), 'upper'),  # of one level: the newer one
-    (('lower', 0.9, 0.45), ('upper', 1.1, 1.45), 'lower'),
-    (('lower', 1.1, 0.55), ('upper', 0.9, 1.55), 'upper'),
-    (('lower', 0.2, 0.1), ('upper', 0.1, 0.25), 'upper'),  # 0.25 m is the least level
-])
+@pytest.mark.parametrize(
+    ('below', 'above', 'first'),
+    [
+        (('lower', 0.9, 0.45), ('upper', 0.6, 1.2), 'upper'),  # of one level: the newer one
+        (('lower', 0.9, 0.45), ('upper', 1.1, 1.45), 'lower'),
+        (('lower', 1.1, 0.55), ('upper', 0.9, 1.55), 'upper'),
+        (('lower', 0.2, 0.1), ('upper', 0.1, 0.25), 'upper'),  # 0.25 m is the least level
+    ],
+)
 @pytest.mark.parametrize('reverse', [False, True])
 def test_order_of_a_pair_follows_from_sizes_and_age(tmp_path, below, above, first, reverse):
     cubes = [cube(*below), cube(*above)]
@@ -141,8 +157,10 @@ def test_order_of_a_pair_follows_from_sizes_and_age(tmp_path, below, above, firs
         if first == 'upper' and below[1] // 1 == above[1] // 1:
             first = 'lower'
     file = tmp_path / 'two.world'
-    file.write_text('<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
-                    f'</include>{"".join(cubes)}</world></sdf>')
+    file.write_text(
+        '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
+        f'</include>{"".join(cubes)}</world></sdf>'
+    )
     with closing(World.from_file(file)) as world:
         found = []
         world.models['upper'].plugin('bumper').outputs['contacts'].connect(found.append)
@@ -150,31 +168,37 @@ def test_order_of_a_pair_follows_from_sizes_and_age(tmp_path, below, above, firs
     second = {'upper': 'lower', 'lower': 'upper'}[first]
     touches = found[-1]
     assert {(touch.first, touch.second) for touch in touches} == {
-        (f'{first}::link::c', f'{second}::link::c')}
+        (f'{first}::link::c', f'{second}::link::c')
+    }
     sign = 1 if first == 'upper' else -1
     assert total([touches[-1]])[2] == pytest.approx(sign * 98.0, abs=0.1)
 
 
 def test_static_body_is_the_first_of_a_pair_of_equal_size(tmp_path):
     file = tmp_path / 'on_static.world'
-    file.write_text('<sdf version="1.6"><world name="w">'
-                    f'{cube("upper", 0.8, 1.3)}{cube("lower", 0.9, 0.45, static=True)}'
-                    '</world></sdf>')
+    file.write_text(
+        '<sdf version="1.6"><world name="w">'
+        f'{cube("upper", 0.8, 1.3)}{cube("lower", 0.9, 0.45, static=True)}'
+        '</world></sdf>'
+    )
     with closing(World.from_file(file)) as world:
         found = []
         world.models['upper'].plugin('bumper').outputs['contacts'].connect(found.append)
         world.run(1000)
     assert {(touch.first, touch.second) for touch in found[-1]} == {
-        ('lower::link::c', 'upper::link::c')}
+        ('lower::link::c', 'upper::link::c')
+    }
     assert total([found[-1][-1]])[2] == pytest.approx(-98.0, abs=0.1)
 
 
 def test_ground_is_the_second_of_a_pair_though_it_is_newer(tmp_path):
     """The promise of upstream's test_bumper: the box of a world bears its weight, upwards."""
     file = tmp_path / 'box_first.world'
-    file.write_text('<sdf version="1.6"><world name="w"><gravity>0 0 -9.81</gravity>'
-                    f'{cube("box", 1.0, 0.5)}<include><uri>model://ground_plane</uri></include>'
-                    '</world></sdf>')
+    file.write_text(
+        '<sdf version="1.6"><world name="w"><gravity>0 0 -9.81</gravity>'
+        f'{cube("box", 1.0, 0.5)}<include><uri>model://ground_plane</uri></include>'
+        '</world></sdf>'
+    )
     with closing(World.from_file(file)) as world:
         world.run(100)  # Bullet's contacts bear no load before they are 10 µm deep
         found = []
@@ -195,9 +219,11 @@ def test_other_collision_of_a_reduced_link_is_distinguished(world):
 
 def test_unknown_collision_is_reported_and_gives_no_contacts(world, caplog):
     _, found = spawn(world, 'bumper_plainname')
-    assert ("contact 'bump_sensor' of link 'base_footprint': it names base_link_collision as "
-            "<collision>; the collisions of 'base_footprint' are: base_footprint_fixed_joint_lump__"
-            'base_link_collision') in caplog.text
+    assert (
+        "contact 'bump_sensor' of link 'base_footprint': it names base_link_collision as "
+        "<collision>; the collisions of 'base_footprint' are: base_footprint_fixed_joint_lump__"
+        'base_link_collision'
+    ) in caplog.text
     world.run(40)
     assert [touches for _, touches in found] == [(), ()]
 
@@ -205,7 +231,9 @@ def test_unknown_collision_is_reported_and_gives_no_contacts(world, caplog):
 def test_defaults_are_those_of_gazebo(world):
     model, _ = spawn(world, 'bumper_defaults')
     assert model.plugin('bumper').params.values == {
-        'bumperTopicName': 'bumper_states', 'frameName': 'world'}
+        'bumperTopicName': 'bumper_states',
+        'frameName': 'world',
+    }
 
 
 def test_the_bumper_of_a_reduced_link_feels_the_wall_that_it_is_pushed_against(world):
@@ -227,4 +255,5 @@ def test_a_fallen_box_has_a_state_for_each_step_since_it_has_landed(world):
     assert counts[780] == 11
     assert {counts[time] for time in counts if time > 1500} == {20}
     assert {(touch.first, touch.second) for touch in found[-1][1]} == {
-        ('bbot::base_link::base_link_collision', GROUND)}
+        ('bbot::base_link::base_link_collision', GROUND)
+    }

@@ -35,8 +35,9 @@ from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
 LEVELS = 3  # of 255 that a face may differ
 LIMITS = {
     # A patch of a texture, beside the mean of all of it.
-    **dict.fromkeys(('Bricks', 'CeilingTiled', 'PaintedWall', 'WoodFloor', 'Wood', 'Road',
-                     'Residential'), 6),
+    **dict.fromkeys(
+        ('Bricks', 'CeilingTiled', 'PaintedWall', 'WoodFloor', 'Wood', 'Road', 'Residential'), 6
+    ),
     # Half of its light is specular, and Gazebo's has a tenth less of that here.
     'ZincYellow': 5,
     ('Wood', '+z_top'): 19,  # the sun shines on the grain, which varies by 29 there
@@ -68,8 +69,9 @@ def scene():
 
 
 def plugin_of(sensor):
-    return next(one for one in sensor.model.parts
-                if isinstance(one, CameraPlugin) and one.sensor is sensor)
+    return next(
+        one for one in sensor.model.parts if isinstance(one, CameraPlugin) and one.sensor is sensor
+    )
 
 
 def robot_with(old, new):
@@ -83,7 +85,8 @@ def stamps(sensor):
     """Return a list that takes the stamp [ns] and the time [ns] of each picture from now on."""
     found = []
     sensor.readings.connect(
-        lambda picture: found.append((picture.stamp_ns, sensor.world.clock.now_ns)))
+        lambda picture: found.append((picture.stamp_ns, sensor.world.clock.now_ns))
+    )
     return found
 
 
@@ -104,8 +107,7 @@ def test_image_agrees_with_the_recording(name):
 @pytest.mark.parametrize('behind', [False, True])
 @pytest.mark.parametrize('turned', [False, True])
 @pytest.mark.parametrize('name', ['colours_0e', 'colours_1e', 'colours_2e'])
-def test_colours_of_materials_agree_with_the_recording(
-        name, turned, behind, tmp_path):
+def test_colours_of_materials_agree_with_the_recording(name, turned, behind, tmp_path):
     """Cubes of 0.4 m stand at x = 3, turned by 45 degrees or not; a texture is its mean colour."""
     text = (RECORDED / 'worlds' / f'{name}.world').read_text(encoding='utf-8')
     (tmp_path / 'w.world').write_text(text if turned else text.replace('0.785398', '0'))
@@ -114,13 +116,19 @@ def test_colours_of_materials_agree_with_the_recording(
         world.scene = replace(world.scene, shadows=False)
         _, camera = spawn_robot(world, 'camera_level', x, yaw)
         seen = camera.read().pixels.astype(int)
-        cubes = {name.removeprefix('cube_'): model.pose.position
-                 for name, model in world.models.items() if name.startswith('cube_')}
+        cubes = {
+            name.removeprefix('cube_'): model.pose.position
+            for name, model in world.models.items()
+            if name.startswith('cube_')
+        }
     half = 0.1 * math.sqrt(2.0)  # from the middle of a turned cube to that of a face, along x and y
     faces = {'+x': (0.2, 0.0, 0.0), '-x': (-0.2, 0.0, 0.0), '+z_top': (0.0, 0.0, 0.2)}
     if turned:
-        faces = {f'{"-+"[x > 0]}x{"-+"[y > 0]}y': (x, y, 0.0)
-                 for x in (-half, half) for y in (-half, half)}
+        faces = {
+            f'{"-+"[x > 0]}x{"-+"[y > 0]}y': (x, y, 0.0)
+            for x in (-half, half)
+            for y in (-half, half)
+        }
     away = {}
     for material, place in cubes.items():
         for face, shift in faces.items():
@@ -129,10 +137,13 @@ def test_colours_of_materials_agree_with_the_recording(
             ahead, left, up = np.add(place, shift) - (x, 0.0, 0.85)
             column = 320 + round(side * FOCAL_LENGTH * left / abs(ahead))
             row = 240 - round(FOCAL_LENGTH * up / abs(ahead))
-            patch = seen[row - 4:row + 5, column - 4:column + 5].reshape(-1, 3).mean(axis=0)
+            patch = seen[row - 4 : row + 5, column - 4 : column + 5].reshape(-1, 3).mean(axis=0)
             away[material, face] = np.abs(patch - FACES[material][face]).max()
-    assert {face: levels for face, levels in away.items()
-            if levels > LIMITS.get(face, LIMITS.get(face[0], LEVELS))} == {}
+    assert {
+        face: levels
+        for face, levels in away.items()
+        if levels > LIMITS.get(face, LIMITS.get(face[0], LEVELS))
+    } == {}
     assert len(away) >= (30 if turned else 15)
 
 
@@ -144,7 +155,8 @@ def test_missing_opengl_is_one_error_with_the_cure(scene, caplog, monkeypatch):
     assert taken == []
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
         'cameras cannot render images: there is no OpenGL 3.3 (requested device index 0, but found '
-        '0 devices); install libegl-mesa0 and libgl1-mesa-dri, which draw in software']
+        '0 devices); install libegl-mesa0 and libgl1-mesa-dri, which draw in software'
+    ]
 
 
 def test_cameras_of_a_multicamera_have_their_own_poses(scene):
@@ -167,10 +179,13 @@ def test_16_bit_image_matches_the_8_bit_one_and_the_recorded_mean(scene):
     assert levels.mean() == pytest.approx(33502.14 / 257.0, abs=0.5)
 
 
-@pytest.mark.parametrize(('old', 'new', 'times'), [
-    ('>30</update_rate>', '>15</update_rate>', [67, 134, 200, 267]),
-    ('<updateRate>0<', '<updateRate>10<', [100, 200, 300, 400]),
-])
+@pytest.mark.parametrize(
+    ('old', 'new', 'times'),
+    [
+        ('>30</update_rate>', '>15</update_rate>', [67, 134, 200, 267]),
+        ('<updateRate>0<', '<updateRate>10<', [100, 200, 300, 400]),
+    ],
+)
 def test_image_rate_is_the_lesser_of_sensor_and_plugin(scene, old, new, times):
     found = []
     camera = next(iter(scene.spawn(robot_with(old, new)).sensors.values()))
@@ -179,8 +194,9 @@ def test_image_rate_is_the_lesser_of_sensor_and_plugin(scene, old, new, times):
     assert found[:4] == times
 
 
-@pytest.mark.parametrize(('robot', 'share'), [('camera_dist_auto', 0.04),
-                                              ('camera_dist_nocrop', 0.06)])
+@pytest.mark.parametrize(
+    ('robot', 'share'), [('camera_dist_auto', 0.04), ('camera_dist_nocrop', 0.06)]
+)
 def test_distorted_image_agrees_with_the_recording_except_at_edges(scene, robot, share):
     """Gazebo's map of the distortion has gaps, which it fills with the mean of what is around."""
     _, camera = spawn_robot(scene, robot)
@@ -226,7 +242,9 @@ def test_numbers_have_six_digits_as_gazebos_sensors_read_them():
         camera = world.spawn(
             '<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" type="camera">'
             '<camera><horizontal_fov>1.3962634</horizontal_fov><image><width>800</width>'
-            '<height>800</height></image></camera></sensor></link></model></sdf>', 'm').sensor('s')
+            '<height>800</height></image></camera></sensor></link></model></sdf>',
+            'm',
+        ).sensor('s')
     assert camera.cameras[0].lens.focal_length == pytest.approx(476.7030836014194, abs=1e-12)
 
 
@@ -247,10 +265,13 @@ def recorded_depths():
         return file[file.files[0]]
 
 
-@pytest.mark.parametrize(('robot', 'kind'), [
-    ('openni_kinect', ('32FC1', 1280, 240, 320, False)),
-    ('depth_camera', ('32FC1', 1280, 1, 76800, True)),
-])
+@pytest.mark.parametrize(
+    ('robot', 'kind'),
+    [
+        ('openni_kinect', ('32FC1', 1280, 240, 320, False)),
+        ('depth_camera', ('32FC1', 1280, 1, 76800, True)),
+    ],
+)
 def test_depths_and_points_agree_with_the_recording(scene, robot, kind):
     _, camera = spawn_robot(scene, robot)
     depths, found, points = depths_of(camera)
@@ -269,8 +290,14 @@ def test_depths_and_points_agree_with_the_recording(scene, robot, kind):
 
 def test_millimetres_are_rounded_down_and_none_is_zero(scene):
     """As recorded but for 21 pixels, which are 1 mm off there, too."""
-    text = (ROBOTS / 'openni_kinect.urdf').read_text(encoding='utf-8').replace(
-        '<pointCloudCutoff>', '<useDepth16UC1Format>true</useDepth16UC1Format><pointCloudCutoff>')
+    text = (
+        (ROBOTS / 'openni_kinect.urdf')
+        .read_text(encoding='utf-8')
+        .replace(
+            '<pointCloudCutoff>',
+            '<useDepth16UC1Format>true</useDepth16UC1Format><pointCloudCutoff>',
+        )
+    )
     depths, kind, _ = depths_of(next(iter(scene.spawn(text).sensors.values())), '<u2')
     assert kind[:2] == ('16UC1', 640)
     expected = np.nan_to_num(recorded_depths() * np.float32(1000.0)).astype(int)
@@ -282,21 +309,29 @@ def test_depth_of_a_wall_is_constant(scene):
     """The level camera of the recording is 2 m from a wall 1.5 m high."""
     for name in [name for name in scene.models if name != 'ground_plane']:
         scene.delete(name)
-    scene.spawn('<sdf version="1.6"><model name="w"><static>1</static><pose>2.1 0 .75 0 0 0</pose>'
-                '<link name="l"><visual name="v"><geometry><box><size>.2 10 1.5</size></box>'
-                '</geometry></visual></link></model></sdf>')
-    text = (ROBOTS / 'openni_kinect.urdf').read_text(encoding='utf-8').replace(
-        'xyz="0.2 0 0.4" rpy="0 0.1 0"', 'xyz="0 0 0.75" rpy="0 0 0"')
+    scene.spawn(
+        '<sdf version="1.6"><model name="w"><static>1</static><pose>2.1 0 .75 0 0 0</pose>'
+        '<link name="l"><visual name="v"><geometry><box><size>.2 10 1.5</size></box>'
+        '</geometry></visual></link></model></sdf>'
+    )
+    text = (
+        (ROBOTS / 'openni_kinect.urdf')
+        .read_text(encoding='utf-8')
+        .replace('xyz="0.2 0 0.4" rpy="0 0.1 0"', 'xyz="0 0 0.75" rpy="0 0 0"')
+    )
     depths, _, _ = depths_of(next(iter(scene.spawn(text).sensors.values())))
     assert np.isnan(depths).sum() == np.isnan(depths[:30]).sum() == 9600
     assert depths[30:236] == pytest.approx(2.0, abs=DEPTH)
     assert depths[-1] == pytest.approx(PLANE_LOWEST, abs=DEPTH)
 
 
-@pytest.mark.parametrize(('robot', 'mode', 'form'), [
-    ('camera_320', 'RGB', 'rgb8; jpeg compressed bgr8'),
-    ('camera_L8', 'L', 'mono8; jpeg compressed '),
-])
+@pytest.mark.parametrize(
+    ('robot', 'mode', 'form'),
+    [
+        ('camera_320', 'RGB', 'rgb8; jpeg compressed bgr8'),
+        ('camera_L8', 'L', 'mono8; jpeg compressed '),
+    ],
+)
 def test_compressed_image_is_a_jpeg_file_of_the_image(scene, robot, mode, form):
     _, camera = spawn_robot(scene, robot)
     compressed, whole = [], []
@@ -319,13 +354,17 @@ def test_each_image_has_its_step_and_none_is_missing(scene):
     scene.run(seconds=1.0)
     assert [stamp for stamp, _ in taken] == [now for _, now in taken]
     assert [stamp // 1_000_000 for stamp, _ in taken] == [
-        math.ceil(1000 * k / 30) for k in range(1, 31)]
+        math.ceil(1000 * k / 30) for k in range(1, 31)
+    ]
 
 
-@pytest.mark.parametrize(('robot', 'plugin', 'output'), [
-    ('camera_320', 'triggered_camera', 'image'),
-    ('multicamera', 'triggered_multicamera', 'right_image'),
-])
+@pytest.mark.parametrize(
+    ('robot', 'plugin', 'output'),
+    [
+        ('camera_320', 'triggered_camera', 'image'),
+        ('multicamera', 'triggered_multicamera', 'right_image'),
+    ],
+)
 def test_triggered_camera_takes_one_image_for_each_trigger(scene, robot, plugin, output):
     text = (FILES.parent / 'robots' / f'{robot}.urdf').read_text(encoding='utf-8')
     name = plugin.removeprefix('triggered_')
@@ -384,8 +423,11 @@ def test_pictures_left_out_are_reported_once_and_all_others_are_sent(scene, capl
     camera.read()
     taken, requested = stamps(camera), []
     request = camera._capture.request
-    monkeypatch.setattr(camera._capture, 'request', lambda *arguments: (
-        requested.append(scene.clock.now_ns), request(*arguments)))
+    monkeypatch.setattr(
+        camera._capture,
+        'request',
+        lambda *arguments: (requested.append(scene.clock.now_ns), request(*arguments)),
+    )
     scene.is_paced = True
     for _ in range(2):
         drawing = process_of(scene)
@@ -393,8 +435,10 @@ def test_pictures_left_out_are_reported_once_and_all_others_are_sent(scene, capl
         scene.run(seconds=12.0)  # two windows, each of at least 5 s
         with contextlib.suppress(ProcessLookupError):  # it may have been replaced
             os.kill(drawing, signal.SIGCONT)
-        wait_until(lambda: scene.run(steps=1) and [stamp for stamp, _ in taken] == requested,
-                   'all pictures that were requested')
+        wait_until(
+            lambda: scene.run(steps=1) and [stamp for stamp, _ in taken] == requested,
+            'all pictures that were requested',
+        )
     (report,) = [r.message for r in caplog.records if 'pictures come at' in r.message]
     # The three that may be pending, in 5 s.
     assert 'pictures come at 0.6 of 30 Hz, as drawing them takes longer' in report
@@ -412,7 +456,8 @@ def test_dead_render_process_is_restarted(scene, caplog):
     # The robot has settled by some micrometres.
     assert (np.abs(camera.read().pixels.astype(int) - before) > LEVELS).mean() < EDGES
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
-        'the render process has died (killed by signal 9); restarting it']
+        'the render process has died (killed by signal 9); restarting it'
+    ]
 
 
 @pytest.mark.parametrize('paced', [False, True])
@@ -430,7 +475,8 @@ def test_stopped_render_process_is_replaced(scene, caplog, paced):
     assert process_of(scene) != stopped
     assert not os.path.exists(f'/proc/{stopped}')
     assert [r.message for r in caplog.records if r.levelno == logging.ERROR] == [
-        'the render process has died (it was stopped, or hung, and was killed); restarting it']
+        'the render process has died (it was stopped, or hung, and was killed); restarting it'
+    ]
 
 
 def test_world_with_a_stopped_render_process_can_be_closed():
@@ -488,19 +534,25 @@ def test_shadows_are_cast_unless_the_world_disables_them():
     assert ground(True).max() <= 34  # ambient light alone: 31
 
 
-@pytest.mark.parametrize(('element', 'said'), [
-    ('<horizontal_fov>0</horizontal_fov>', 'horizontal_fov'),
-    ('<horizontal_fov>3.2</horizontal_fov>', 'horizontal_fov'),
-    ('<horizontal_fov>nan</horizontal_fov>', 'horizontal_fov'),
-    ('<image><width>0</width></image>', 'width'),
-    ('<image><width>9000</width></image>', 'width'),
-    ('<clip><near>2</near><far>1</far></clip>', 'near must be above 0 and below far'),
-    ('<noise><type>gaussian</type><stddev>nan</stddev></noise>', 'stddev'),
-])
+@pytest.mark.parametrize(
+    ('element', 'said'),
+    [
+        ('<horizontal_fov>0</horizontal_fov>', 'horizontal_fov'),
+        ('<horizontal_fov>3.2</horizontal_fov>', 'horizontal_fov'),
+        ('<horizontal_fov>nan</horizontal_fov>', 'horizontal_fov'),
+        ('<image><width>0</width></image>', 'width'),
+        ('<image><width>9000</width></image>', 'width'),
+        ('<clip><near>2</near><far>1</far></clip>', 'near must be above 0 and below far'),
+        ('<noise><type>gaussian</type><stddev>nan</stddev></noise>', 'stddev'),
+    ],
+)
 def test_invalid_lens_is_one_error(element, said, caplog):
     with closing(World.empty()) as world:
-        world.spawn('<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" '
-                    f'type="camera"><camera>{element}</camera></sensor></link></model></sdf>', 'm')
+        world.spawn(
+            '<sdf version="1.6"><model name="m"><link name="l"><sensor name="s" '
+            f'type="camera"><camera>{element}</camera></sensor></link></model></sdf>',
+            'm',
+        )
         assert said in caplog.text
         world.run(steps=10)
 
@@ -511,7 +563,9 @@ def test_rate_of_zero_or_above_that_of_the_steps_is_every_step(rate):
         model = world.spawn(
             '<sdf version="1.6"><model name="m"><static>1</static><link name="l"><sensor name="s" '
             f'type="camera"><update_rate>{rate}</update_rate><camera/></sensor></link></model>'
-            '</sdf>', 'm')
+            '</sdf>',
+            'm',
+        )
         taken = stamps(next(iter(model.sensors.values())))
         world.run(steps=5)
         assert [stamp // 1_000_000 for stamp, _ in taken] == [1, 2, 3, 4, 5]
@@ -524,7 +578,9 @@ def test_smallest_and_largest_images_are_rendered():
                 '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 1 0 0 0</pose>'
                 '<link name="l"><sensor name="s" type="camera"><camera><image>'
                 f'<width>{size}</width><height>{size}</height></image></camera></sensor></link>'
-                '</model></sdf>', 'm')
+                '</model></sdf>',
+                'm',
+            )
             assert next(iter(model.sensors.values())).read().pixels.shape == (size, size, 3)
 
 
@@ -591,16 +647,23 @@ def test_texture_has_the_right_orientation(tmp_path):
     Image.fromarray(image).save(folder / 'image.png')
     (folder / 'square.dae').write_text(TEXTURED.format(image='image.png'))
     with closing(World.empty()) as world:
-        world.spawn('<sdf version="1.6"><model name="s"><static>1</static><pose>3 0 1 0 0 0</pose>'
-                    f'<link name="l"><visual name="v"><geometry><mesh><uri>{folder}/square.dae'
-                    '</uri></mesh></geometry></visual></link></model></sdf>', 's')
+        world.spawn(
+            '<sdf version="1.6"><model name="s"><static>1</static><pose>3 0 1 0 0 0</pose>'
+            f'<link name="l"><visual name="v"><geometry><mesh><uri>{folder}/square.dae'
+            '</uri></mesh></geometry></visual></link></model></sdf>',
+            's',
+        )
         eye = world.spawn(
             '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 1 0 0 0</pose><link '
-            'name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>', 'm')
+            'name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>',
+            'm',
+        )
         seen = next(iter(eye.sensors.values())).read().pixels.astype(int)
     left, right, upper, lower = 120, 200, 80, 160  # [pixels] within the quarters of the square
-    assert [int(seen[row, column].argmax()) for row, column in (
-        (upper, right), (upper, left), (lower, right))] == [0, 1, 2]
+    assert [
+        int(seen[row, column].argmax())
+        for row, column in ((upper, right), (upper, left), (lower, right))
+    ] == [0, 1, 2]
     # The side that faces away from the sun has the scene's ambient light, 0.4 of 255; there is some
     # of the pixels beside in it.
     assert seen[upper, right, 0] == pytest.approx(102, abs=20)
@@ -612,20 +675,27 @@ def test_an_image_of_a_script_lies_on_the_ground_with_its_top_along_y(tmp_path):
     Image.fromarray(image).save(tmp_path / 'track.png')
     (tmp_path / 'track.material').write_text(
         'material track\n{\n technique\n {\n  pass\n  {\n   texture_unit\n   {\n    '
-        'texture track.png\n   }\n  }\n }\n}\n')
+        'texture track.png\n   }\n  }\n }\n}\n'
+    )
     with closing(World.empty()) as world:
         world.spawn(
             '<sdf version="1.6"><model name="t"><static>1</static><pose>0 0 .01 0 0 0</pose><link '
             'name="l"><visual name="v"><geometry><plane><normal>0 0 1</normal><size>2 2</size>'
             f'</plane></geometry><material><script><uri>file://{tmp_path}</uri><name>track</name>'
-            '</script></material></visual></link></model></sdf>', 't')
+            '</script></material></visual></link></model></sdf>',
+            't',
+        )
         eye = world.spawn(
             '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 3 0 1.5708 0</pose>'
             '<link name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>',
-            'm')
+            'm',
+        )
         seen = next(iter(eye.sensors.values())).read().pixels.astype(int)
     # The picture's top is +x and its left is +y.
     x_left_y_top, x_right_y_top, x_left_y_bottom = seen[160, 120], seen[80, 120], seen[160, 200]
     assert [int(one.argmax()) for one in (x_left_y_top, x_right_y_top, x_left_y_bottom)] == [
-        0, 1, 2]
+        0,
+        1,
+        2,
+    ]
     assert seen[80, 200].max() < 60

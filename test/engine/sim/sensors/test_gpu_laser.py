@@ -20,8 +20,11 @@ def scene():
 
 def spawn_gpu(scene, robot, old='', new=''):
     text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
-    for before, after in (('type="ray"', 'type="gpu_ray"'), ('ros_laser.so', 'ros_gpu_laser.so'),
-                          *([(old, new)] if old else ())):
+    for before, after in (
+        ('type="ray"', 'type="gpu_ray"'),
+        ('ros_laser.so', 'ros_gpu_laser.so'),
+        *([(old, new)] if old else ()),
+    ):
         assert before in text
         text = text.replace(before, after)
     return scene.spawn(text)
@@ -54,4 +57,5 @@ def test_what_is_missing_is_said_in_upstreams_words_but_warns_of_nothing(scene, 
     caplog.set_level(logging.INFO, 'rosbots_description.sim.plugins')
     spawn_gpu(scene, 'laser_nonoise', '<frameName>laser_link</frameName>', '')
     assert [(record.levelname, record.getMessage()) for record in caplog.records] == [
-        ('INFO', 'Laser plugin missing <frameName>, defaults to /world')]
+        ('INFO', 'Laser plugin missing <frameName>, defaults to /world')
+    ]

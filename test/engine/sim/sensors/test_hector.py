@@ -12,13 +12,13 @@ from rosbots_description.sim.core.errors import NotFoundError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, multiply, rotate
 from rosbots_description.sim.public.world import World
 
-ROBOT = '''<robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="1" ixy="0"
+ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/><inertia ixx="1" ixy="0"
 ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="mast"><inertial><mass value=".001"/>
 <inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial></link>
 <joint name="j" type="fixed"><parent link="base"/><child link="mast"/>
 <origin xyz="0 0 2" rpy="0 0 .5"/></joint>
 <gazebo><plugin name="p" filename="libhector_gazebo_ros_{library}.so">{tags}</plugin></gazebo>
-</robot>'''
+</robot>"""
 GRAVITY = 9.8  # [m/s^2]
 
 
@@ -49,8 +49,10 @@ def test_fix_is_on_the_ellipsoid_with_x_north_and_y_west(world):
 
 
 def test_heading_rotates_position_and_velocity(world):
-    tags = ('<referenceLatitude>0</referenceLatitude><referenceLongitude>0</referenceLongitude>'
-            '<referenceHeading>90</referenceHeading><referenceAltitude>7</referenceAltitude>')
+    tags = (
+        '<referenceLatitude>0</referenceLatitude><referenceLongitude>0</referenceLongitude>'
+        '<referenceHeading>90</referenceHeading><referenceAltitude>7</referenceAltitude>'
+    )
     model, plugin, found = spawn(world, 'gps', 'fix', tags, y=100.0)
     velocities = []
     plugin.outputs['velocity'].connect(velocities.append)
@@ -80,8 +82,10 @@ def test_message_has_its_covariance(world):
 
 def test_drift_and_noise_have_their_deviation_and_correlation_time():
     """Over many seeds, as one drift is nearly constant."""
-    tags = ('<accelDrift>.3</accelDrift><accelDriftFrequency>0.1</accelDriftFrequency>'
-            '<yawDrift>.1</yawDrift><accelOffset>1 0 0</accelOffset>')
+    tags = (
+        '<accelDrift>.3</accelDrift><accelDriftFrequency>0.1</accelDriftFrequency>'
+        '<yawDrift>.1</yawDrift><accelOffset>1 0 0</accelOffset>'
+    )
     drifts = []
     for seed in range(150):
         with closing(World()) as world:
@@ -100,14 +104,19 @@ def test_drift_of_the_velocity_is_integrated_into_the_position(world):
     tags = '<velocityDrift>.5</velocityDrift><driftFrequency>0.001</driftFrequency>'
     plugin = spawn(world, 'gps', 'fix', tags)[1]
     model, step = plugin._speed, 0.5
-    moved = sum(math.exp(-0.001 * (100.0 - time)) * model.drift(time) * step
-                for time in np.arange(0.25, 100.0, step))
+    moved = sum(
+        math.exp(-0.001 * (100.0 - time)) * model.drift(time) * step
+        for time in np.arange(0.25, 100.0, step)
+    )
     assert model.integrated_drift(100.0, plugin._position.frequency) == pytest.approx(
-        moved, rel=1e-3)
+        moved, rel=1e-3
+    )
 
 
-@pytest.mark.parametrize(('tags', 'mount'), [
-    ('', 0.0), ('<bodyName>mast</bodyName>', 0.5), ('<rpyOffset>0 0 .5</rpyOffset>', 0.5)])
+@pytest.mark.parametrize(
+    ('tags', 'mount'),
+    [('', 0.0), ('<bodyName>mast</bodyName>', 0.5), ('<rpyOffset>0 0 .5</rpyOffset>', 0.5)],
+)
 def test_falling_imu_measures_orientation_and_rate_and_no_acceleration(world, tags, mount):
     model, _, found = spawn(world, 'imu', 'imu', tags)
     attitude = from_rpy(0.0, 0.3, 0.4)
@@ -116,16 +125,20 @@ def test_falling_imu_measures_orientation_and_rate_and_no_acceleration(world, ta
     world.run(3)
     reading = found[-1]
     assert reading.orientation == pytest.approx(
-        multiply(attitude, from_rpy(0.0, 0.0, mount)), abs=0.005)
+        multiply(attitude, from_rpy(0.0, 0.0, mount)), abs=0.005
+    )
     assert rotate(reading.orientation, reading.angular_velocity) == pytest.approx(
-        (0.0, 0.0, 1.0), abs=0.005)
+        (0.0, 0.0, 1.0), abs=0.005
+    )
     assert np.linalg.norm(reading.linear_acceleration) < 2.1  # of the mast, 2 m off the axis
 
 
 def test_imu_at_rest_measures_gravity_and_its_errors_tilt_the_orientation(world):
-    tags = ('<accelOffset>.49 0 0</accelOffset><yawOffset>.2</yawOffset><rateOffset>0 0 1'
-            '</rateOffset><rateScaleError>2 2 2</rateScaleError><accelGaussianNoise>.98 .98 0'
-            '</accelGaussianNoise><yawGaussianNoise>.1</yawGaussianNoise>')
+    tags = (
+        '<accelOffset>.49 0 0</accelOffset><yawOffset>.2</yawOffset><rateOffset>0 0 1'
+        '</rateOffset><rateScaleError>2 2 2</rateScaleError><accelGaussianNoise>.98 .98 0'
+        '</accelGaussianNoise><yawGaussianNoise>.1</yawGaussianNoise>'
+    )
     _, plugin, found = spawn(world, 'imu', 'imu', tags)
     biases = []
     plugin.outputs['bias'].connect(biases.append)
@@ -135,7 +148,8 @@ def test_imu_at_rest_measures_gravity_and_its_errors_tilt_the_orientation(world)
     assert reading.linear_acceleration[2] == pytest.approx(GRAVITY)
     # A bias of 0.05 g along x looks like a pitch of -0.05 rad.
     assert reading.orientation == pytest.approx(
-        multiply(from_rpy(0.0, 0.0, 0.2), from_rpy(0.0, -0.05, 0.0)), abs=1e-4)
+        multiply(from_rpy(0.0, 0.0, 0.2), from_rpy(0.0, -0.05, 0.0)), abs=1e-4
+    )
     assert reading.variances == pytest.approx((0.01, 0.01, 0.01, 0, 0, 0, 0.98**2, 0.98**2, 0))
     assert bias.linear_acceleration == (0.49, 0.0, 0.0)
     assert bias.angular_velocity == (0.0, 0.0, 1.0)
@@ -157,8 +171,13 @@ def test_readings_repeat_with_the_seed_at_any_start_of_reading():
     def reading(seed, begin):
         with closing(World.empty()) as world:
             world.seed = seed
-            model = world.spawn(ROBOT.format(library='imu', tags=(
-                '<accelDrift>.3</accelDrift><rateGaussianNoise>.1</rateGaussianNoise>')), 'r')
+            model = world.spawn(
+                ROBOT.format(
+                    library='imu',
+                    tags=('<accelDrift>.3</accelDrift><rateGaussianNoise>.1</rateGaussianNoise>'),
+                ),
+                'r',
+            )
             world.run(begin)
             found = []
             model.plugin('p').outputs['imu'].connect(found.append)
@@ -179,18 +198,27 @@ def test_tilt_is_unknown_without_gravity(world):
     assert reading.orientation == pytest.approx((0.0, 0.0, 0.0, 1.0))
 
 
-@pytest.mark.parametrize(('library', 'tags', 'sentence'), [
-    ('imu', '<accelDrift>1 2</accelDrift>', "<accelDrift> is '1 2'; it takes 3 finite numbers"),
-    ('imu', '<yawDrift>nan</yawDrift>', "<yawDrift> is 'nan'; it takes a finite number"),
-    ('imu', '<rateGaussianNoise>-1</rateGaussianNoise>', "is '-1'; it must not be negative"),
-    ('imu', '<bodyName>nobody</bodyName>', 'bodyName: nobody does not exist'),
-    ('gps', '<referenceLatitude>95</referenceLatitude>',
-     '<referenceLatitude> is 95; it must lie between -89.999 and 89.999'),
-    ('gps', '<status>300</status>', '<status> is 300; it must lie between -1 and 2'),
-    ('gps', '<updateRate>fast</updateRate>', "<updateRate> is 'fast'; it takes a finite number"),
-])
-def test_invalid_plugin_is_left_out_with_an_error(
-        world, library, tags, sentence, caplog):
+@pytest.mark.parametrize(
+    ('library', 'tags', 'sentence'),
+    [
+        ('imu', '<accelDrift>1 2</accelDrift>', "<accelDrift> is '1 2'; it takes 3 finite numbers"),
+        ('imu', '<yawDrift>nan</yawDrift>', "<yawDrift> is 'nan'; it takes a finite number"),
+        ('imu', '<rateGaussianNoise>-1</rateGaussianNoise>', "is '-1'; it must not be negative"),
+        ('imu', '<bodyName>nobody</bodyName>', 'bodyName: nobody does not exist'),
+        (
+            'gps',
+            '<referenceLatitude>95</referenceLatitude>',
+            '<referenceLatitude> is 95; it must lie between -89.999 and 89.999',
+        ),
+        ('gps', '<status>300</status>', '<status> is 300; it must lie between -1 and 2'),
+        (
+            'gps',
+            '<updateRate>fast</updateRate>',
+            "<updateRate> is 'fast'; it takes a finite number",
+        ),
+    ],
+)
+def test_invalid_plugin_is_left_out_with_an_error(world, library, tags, sentence, caplog):
     model = world.spawn(ROBOT.format(library=library, tags=tags), 'r')
     assert sentence in caplog.text
     with pytest.raises(NotFoundError):
@@ -200,5 +228,7 @@ def test_invalid_plugin_is_left_out_with_an_error(
 
 def test_old_names_of_the_heading_errors_are_reported(world, caplog):
     spawn(world, 'imu', 'imu', '<headingDrift>1</headingDrift>')
-    assert 'not read by this plugin: <headingDrift> (the tags of the heading begin with yaw' \
+    assert (
+        'not read by this plugin: <headingDrift> (the tags of the heading begin with yaw'
         in caplog.text
+    )

@@ -30,13 +30,13 @@ def spawn(world, robot, yaw=0.0, edit=str):
     (plugin,) = model.plugins.values()
     found = []
     plugin.outputs['imu'].connect(
-        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading))
+    )
     return model, found
 
 
 def numbers(reading):
-    return np.array((*reading.orientation, *reading.angular_velocity,
-                     *reading.linear_acceleration))
+    return np.array((*reading.orientation, *reading.angular_velocity, *reading.linear_acceleration))
 
 
 def fall(model):
@@ -79,8 +79,9 @@ def test_integrated_readings_give_the_velocity_of_the_sensor(world):
 
     def velocity():
         pose, (linear, angular) = model.links['base_footprint'].state()
-        return np.array(linear) + np.cross(angular, rotate(pose.orientation,
-                                                           sensor.spec.pose.position))
+        return np.array(linear) + np.cross(
+            angular, rotate(pose.orientation, sensor.spec.pose.position)
+        )
 
     del found[:]
     before = velocity()
@@ -99,9 +100,11 @@ def test_model_plugin_has_correct_axes_unless_the_world_is_strict(world):
     world.run(40)
     pitched = found[-1][1]
     assert pitched.angular_velocity == pytest.approx(
-        (-math.sin(0.2), 0.0, math.cos(0.2)), abs=0.005)
+        (-math.sin(0.2), 0.0, math.cos(0.2)), abs=0.005
+    )
     assert pitched.linear_acceleration == pytest.approx(
-        (GRAVITY * math.sin(0.2), 0.0, -GRAVITY * math.cos(0.2)), abs=0.05)
+        (GRAVITY * math.sin(0.2), 0.0, -GRAVITY * math.cos(0.2)), abs=0.05
+    )
 
 
 def test_imu_on_a_reduced_link_has_its_true_orientation(world):
@@ -121,26 +124,35 @@ def test_a_body_behind_a_fixed_joint_has_the_recorded_attitude_in_a_strict_world
     _, found = spawn(world, 'imu_model_lumped', yaw=0.7)
     world.run(20)
     assert found[-1][1].orientation == pytest.approx(
-        (-0.00215763, 0.00228483, 0.338335, 0.941021), abs=1e-6)  # rest.quat_mean of the recording
+        (-0.00215763, 0.00228483, 0.338335, 0.941021), abs=1e-6
+    )  # rest.quat_mean of the recording
 
 
-@pytest.mark.parametrize(('robot', 'deviations', 'claimed'), [
-    ('imu_sensor_noise', [0.05] * 10, 0.05),
-    ('imu_sensor_sdfnoise', [0.0] * 4 + [2e-4] * 3 + [0.017] * 3, 0.0),
-    ('imu_model_noise', [0.0] * 4 + [0.05] * 6, 0.05),
-])
+@pytest.mark.parametrize(
+    ('robot', 'deviations', 'claimed'),
+    [
+        ('imu_sensor_noise', [0.05] * 10, 0.05),
+        ('imu_sensor_sdfnoise', [0.0] * 4 + [2e-4] * 3 + [0.017] * 3, 0.0),
+        ('imu_model_noise', [0.0] * 4 + [0.05] * 6, 0.05),
+    ],
+)
 def test_noise_is_on_the_same_values_as_in_gazebo(world, robot, deviations, claimed):
     _, found = spawn(world, robot)
     world.run(8000)
     readings = np.array([numbers(reading) for time, reading in found if time > 1000])
     assert readings.std(axis=0) == pytest.approx(np.array(deviations), rel=0.12, abs=1e-6)
-    assert {reading.variances for _, reading in found} == {(claimed ** 2,) * 9}
+    assert {reading.variances for _, reading in found} == {(claimed**2,) * 9}
 
 
-@pytest.mark.parametrize(('robot', 'times'), [
-    ('imu_sensor', [10, 20, 30]), ('imu_sensor_norate', [1000, 2000, 3000]),
-    ('imu_sensor_sdfnoise', [5, 10, 15]), ('imu_model', [20, 40, 60]),
-])
+@pytest.mark.parametrize(
+    ('robot', 'times'),
+    [
+        ('imu_sensor', [10, 20, 30]),
+        ('imu_sensor_norate', [1000, 2000, 3000]),
+        ('imu_sensor_sdfnoise', [5, 10, 15]),
+        ('imu_model', [20, 40, 60]),
+    ],
+)
 def test_readings_have_the_rate_of_the_plugin(world, robot, times):
     _, found = spawn(world, robot)
     world.run(times[-1])
@@ -149,8 +161,10 @@ def test_readings_have_the_rate_of_the_plugin(world, robot, times):
 
 def test_model_plugin_without_a_rate_updates_every_step_with_defaults(world):
     def bare(text):
-        plugin = '<plugin name="p" filename="libgazebo_ros_imu.so"><bodyName>base_footprint' \
+        plugin = (
+            '<plugin name="p" filename="libgazebo_ros_imu.so"><bodyName>base_footprint'
             '</bodyName></plugin>'
+        )
         return f'{text.split("<plugin")[0]}{plugin}</gazebo></robot>'
 
     model, found = spawn(world, 'imu_model', edit=bare)
@@ -158,29 +172,63 @@ def test_model_plugin_without_a_rate_updates_every_step_with_defaults(world):
     assert [time for time, _ in found] == [1, 2, 3]
     values = next(iter(model.plugins.values())).params.values
     assert (values['topicName'], values['serviceName'], values['frameName']) == (
-        '/default_imu', '/default_imu', 'base_footprint')
+        '/default_imu',
+        '/default_imu',
+        'base_footprint',
+    )
 
 
 def test_tags_that_are_missing_are_warnings_in_upstreams_words(world, caplog):
-    spawn(world, 'imu_sensor', edit=lambda text: text.split('<topicName>')[0]
-          + '<frameName>imu_link</frameName></plugin></sensor></gazebo></robot>')
+    spawn(
+        world,
+        'imu_sensor',
+        edit=lambda text: (
+            text.split('<topicName>')[0]
+            + '<frameName>imu_link</frameName></plugin></sensor></gazebo></robot>'
+        ),
+    )
     assert [record.getMessage() for record in caplog.records] == [
         'missing <robotNamespace>, set to default: /ibot/',
         'missing <topicName>, set to /namespace/default: imu_data',
-        'missing <updateRateHZ>, set to default: 1', 'missing <gaussianNoise>, set to default: 0',
-        'missing <xyzOffset>, set to default: 0 0 0', 'missing <rpyOffset>, set to default: 0 0 0']
+        'missing <updateRateHZ>, set to default: 1',
+        'missing <gaussianNoise>, set to default: 0',
+        'missing <xyzOffset>, set to default: 0 0 0',
+        'missing <rpyOffset>, set to default: 0 0 0',
+    ]
 
 
-@pytest.mark.parametrize(('robot', 'old', 'new', 'sentence'), [
-    ('imu_sensor', '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
-    ('imu_sensor', '<rpyOffset>0 0 0', '<rpyOffset>0 0', "<rpyOffset> is '0 0'; it takes three"),
-    ('imu_sensor', '<gaussianNoise>0<', '<gaussianNoise>nan<', "<gaussianNoise> is 'nan'; it"),
-    ('imu_sensor', '<gaussianNoise>0<', '<gaussianNoise>-1<', '<gaussianNoise> is -1; it must be'),
-    ('imu_model', '<bodyName>base_footprint</bodyName>', '', 'missing <bodyName>, cannot proceed'),
-    ('imu_model', '>base_footprint</body', '>nobody</body', 'bodyName: nobody does not exist'),
-])
-def test_invalid_imu_is_left_out_with_an_error(
-        world, robot, old, new, sentence, caplog):
+@pytest.mark.parametrize(
+    ('robot', 'old', 'new', 'sentence'),
+    [
+        (
+            'imu_sensor',
+            '<frameName>imu_link</frameName>',
+            '',
+            'missing <frameName>, cannot proceed',
+        ),
+        (
+            'imu_sensor',
+            '<rpyOffset>0 0 0',
+            '<rpyOffset>0 0',
+            "<rpyOffset> is '0 0'; it takes three",
+        ),
+        ('imu_sensor', '<gaussianNoise>0<', '<gaussianNoise>nan<', "<gaussianNoise> is 'nan'; it"),
+        (
+            'imu_sensor',
+            '<gaussianNoise>0<',
+            '<gaussianNoise>-1<',
+            '<gaussianNoise> is -1; it must be',
+        ),
+        (
+            'imu_model',
+            '<bodyName>base_footprint</bodyName>',
+            '',
+            'missing <bodyName>, cannot proceed',
+        ),
+        ('imu_model', '>base_footprint</body', '>nobody</body', 'bodyName: nobody does not exist'),
+    ],
+)
+def test_invalid_imu_is_left_out_with_an_error(world, robot, old, new, sentence, caplog):
     text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
     assert old in text
     model = world.spawn(text.replace(old, new), 'ibot')

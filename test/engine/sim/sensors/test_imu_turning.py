@@ -24,7 +24,8 @@ def test_turning_imu_measures_rate_and_centripetal_acceleration(name):
         world.run(1500)
         found, turning, forward = [], [], []
         model.plugin('imu_sensor').outputs['imu'].connect(
-            lambda reading: found.append((*reading.angular_velocity, *reading.linear_acceleration)))
+            lambda reading: found.append((*reading.angular_velocity, *reading.linear_acceleration))
+        )
         for _ in range(100):
             world.run(10)
             turning.append(model.twist.angular[2])

@@ -11,8 +11,10 @@ from rosbots_description.sim.public.world import World
 
 ARM = (RECORDED / 'robots' / 'arm_ft.urdf').read_text(encoding='utf-8')
 # In Gazebo, hanging at rest: force and torque of each joint [N, N m].
-HANGING = {'ft_elbow': ((0.0, 0.0, 4.9), (0.0, 0.0, 0.0)),
-           'ft_shoulder': ((0.0, 0.0, 14.7), (0.245, 0.0, 0.0))}
+HANGING = {
+    'ft_elbow': ((0.0, 0.0, 4.9), (0.0, 0.0, 0.0)),
+    'ft_shoulder': ((0.0, 0.0, 14.7), (0.245, 0.0, 0.0)),
+}
 CLOSE = 1e-3
 
 
@@ -31,7 +33,8 @@ def spawn(world, arm=ARM):
         if 'wrench' in plugin.outputs:
             readings = found.setdefault(plugin.params.values['topicName'], [])
             plugin.outputs['wrench'].connect(
-                lambda reading, to=readings: to.append((world.clock.now_ns // 1_000_000, reading)))
+                lambda reading, to=readings: to.append((world.clock.now_ns // 1_000_000, reading))
+            )
     return model, found
 
 
@@ -44,7 +47,8 @@ def test_reactions_at_rest_are_the_weight_below_the_joint(world, topic):
     message = wrench_message(found[topic][-1][1]).wrench
     assert (message.force.x, message.force.y, message.force.z) == pytest.approx(force, abs=CLOSE)
     assert (message.torque.x, message.torque.y, message.torque.z) == pytest.approx(
-        torque, abs=CLOSE)
+        torque, abs=CLOSE
+    )
 
 
 def test_effort_on_a_joint_is_part_of_its_torque(world):
@@ -64,8 +68,9 @@ def test_reactions_at_a_joint_limit_agree_with_the_recording(world):
     model.joint('shoulder').set_position(3.0269811)
     world.run(1500)
     for topic, expected in (
-            ('ft_elbow', (-3.362324, 0.0, -3.5645097, 0.0, -0.67247247, 0.0)),
-            ('ft_shoulder', (1.6814816, 0.0, 14.604347, 0.24342872, 0.0, -0.028053357))):
+        ('ft_elbow', (-3.362324, 0.0, -3.5645097, 0.0, -0.67247247, 0.0)),
+        ('ft_shoulder', (1.6814816, 0.0, 14.604347, 0.24342872, 0.0, -0.028053357)),
+    ):
         force, torque = found[topic][-1][1]
         assert (*force, *torque) == pytest.approx(expected, abs=CLOSE)
 
@@ -80,9 +85,11 @@ ROD = """<robot name="rod"><link name="world"/><joint name="f" type="fixed"><par
 <limit lower="{lower}" upper="0" effort="100" velocity="10"/></joint>
 <gazebo><plugin name="p" filename="libgazebo_ros_ft_sensor.so"><topicName>t</topicName>
 <jointName>j</jointName></plugin></gazebo></robot>"""
-LOAD = ('<sdf version="1.6"><model name="load"><link name="l"><inertial><mass>1</mass></inertial>'
-        '<collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision>'
-        '</link></model></sdf>')
+LOAD = (
+    '<sdf version="1.6"><model name="load"><link name="l"><inertial><mass>1</mass></inertial>'
+    '<collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision>'
+    '</link></model></sdf>'
+)
 
 
 @pytest.mark.parametrize('lower', [-1, 0])  # 0: as of a fixed joint that is kept for its sensor
@@ -92,7 +99,8 @@ def test_reaction_at_a_joint_limit_is_the_weight_of_rod_and_load(world, lower):
     plugin.outputs['wrench'].connect(found.append)
     world.run(200)
     assert (*found[-1].force, *found[-1].torque) == pytest.approx(
-        (0.0, 0.0, -19.6, 0.0, 9.8, 0.0), abs=0.01)
+        (0.0, 0.0, -19.6, 0.0, 9.8, 0.0), abs=0.01
+    )
     world.spawn(LOAD, x=0.8 * math.cos(0.7), y=0.8 * math.sin(0.7), z=1.1, yaw=0.7)
     world.run(1000)
     assert found[-1].force[2] == pytest.approx(-29.4, abs=0.05)
@@ -122,11 +130,14 @@ def test_readings_continue_after_a_reset_of_time(world):
     assert found['ft_elbow'][-1][1].force[2] == pytest.approx(4.9, abs=CLOSE)
 
 
-@pytest.mark.parametrize(('old', 'new', 'sentence'), [
-    ('<jointName>elbow</jointName>', '', 'missing <jointName>, cannot proceed'),
-    ('<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
-    ('<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
-])
+@pytest.mark.parametrize(
+    ('old', 'new', 'sentence'),
+    [
+        ('<jointName>elbow</jointName>', '', 'missing <jointName>, cannot proceed'),
+        ('<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
+        ('<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
+    ],
+)
 def test_invalid_plugin_is_left_out_with_an_error(world, old, new, sentence, caplog):
     assert old in ARM
     world.spawn(ARM.replace(old, new), 'arm')

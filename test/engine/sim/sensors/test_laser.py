@@ -15,8 +15,9 @@ from rosbots_description.sim.sensors.ray_fan import Patches, RayFan, Sweep
 SCANS = recordings('laser')
 EXACT = 1e-5  # [m] of all recorded ranges; they have six digits behind the point
 ROBOT = (ROBOTS / 'laser_nonoise.urdf').read_text(encoding='utf-8')
-NOISY = ROBOT.replace('</ray>', '<noise><type>gaussian</type><mean>0.0</mean><stddev>0.01</stddev>'
-                                '</noise></ray>')
+NOISY = ROBOT.replace(
+    '</ray>', '<noise><type>gaussian</type><mean>0.0</mean><stddev>0.01</stddev></noise></ray>'
+)
 
 
 def robot_with(**tags):
@@ -105,9 +106,14 @@ def test_a_scan_of_a_driving_robot_belongs_to_the_pose_of_its_stamp(scene):
 
 def test_moving_model_is_seen_at_its_pose_at_the_end_of_the_step(scene):
     robot = scene.spawn(ROBOT)
-    ball = scene.spawn('<sdf version="1.6"><model name="ball"><link name="l"><gravity>0</gravity>'
-                       '<collision name="c"><geometry><sphere><radius>.1</radius></sphere>'
-                       '</geometry></collision></link></model></sdf>', x=2.12, y=0.2, z=0.35)
+    ball = scene.spawn(
+        '<sdf version="1.6"><model name="ball"><link name="l"><gravity>0</gravity>'
+        '<collision name="c"><geometry><sphere><radius>.1</radius></sphere>'
+        '</geometry></collision></link></model></sdf>',
+        x=2.12,
+        y=0.2,
+        z=0.35,
+    )
     sensor = robot.sensor('head_hokuyo_sensor')
     for _ in range(3):
         ball.set_pose(Pose((ball.pose.position[0] - 0.3, 0.2, 0.35)))
@@ -145,8 +151,16 @@ def test_a_static_model_is_seen_where_it_was_put(scene):
 
 def test_a_level_fan_tries_no_shape_above_below_or_behind_it():
     fan = RayFan(Sweep(1, 1, 0.0, 0.0), Sweep(181, 181, -math.pi / 2, math.pi / 2))
-    centres = np.array(((2.0, 0.0, 0.0), (2.0, 0.0, 0.2), (2.0, 0.0, -0.2), (-2.0, 0.0, 0.0),
-                        (9.0, 0.0, 0.0), (2.0, 0.0, 0.09)))
+    centres = np.array(
+        (
+            (2.0, 0.0, 0.0),
+            (2.0, 0.0, 0.2),
+            (2.0, 0.0, -0.2),
+            (-2.0, 0.0, 0.0),
+            (9.0, 0.0, 0.0),
+            (2.0, 0.0, 0.09),
+        )
+    )
     flat_boxes = np.full(6, 0.5), np.full(6, 0.1)  # radii and half heights [m]
     assert fan.may_meet(centres, *flat_boxes, most=8.0).tolist() == [0, 5]
 
@@ -165,20 +179,28 @@ def test_a_fan_tries_the_spheres_that_reach_between_its_cones(elevations):
 @pytest.mark.parametrize('tilt', [(0.0, 0.0), (0.7, -0.4), (math.pi / 2, 0.0)])
 def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
     """Compare with a cast of all rays at all shapes, near, around and far from the sensor."""
+
     def all_of(fan, centres, *_):
         every, none = np.arange(len(centres)), np.zeros(len(centres), int)
         return Patches(every, none, none + fan.shape[0], none, none + fan.shape[1])
 
     draw = random.Random(1)
-    shapes = ('<box><size>{0} {1} {2}</size></box>', '<sphere><radius>{0}</radius></sphere>',
-              '<cylinder><radius>{0}</radius><length>{2}</length></cylinder>')
+    shapes = (
+        '<box><size>{0} {1} {2}</size></box>',
+        '<sphere><radius>{0}</radius></sphere>',
+        '<cylinder><radius>{0}</radius><length>{2}</length></cylinder>',
+    )
     links = ''.join(
         f'<collision name="c{i}"><pose>{" ".join(str(draw.gauss(0, 2)) for _ in range(6))}</pose>'
         f'<geometry>{shapes[i % 3].format(*(draw.lognormvariate(-0.9, 0.8) for _ in range(3)))}'
-        '</geometry></collision>' for i in range(90))
+        '</geometry></collision>'
+        for i in range(90)
+    )
     with closing(World()) as world:
-        world.spawn(f'<sdf version="1.6"><model name="m"><static>1</static><link name="l">{links}'
-                    '</link></model></sdf>')
+        world.spawn(
+            f'<sdf version="1.6"><model name="m"><static>1</static><link name="l">{links}'
+            '</link></model></sdf>'
+        )
         robot = world.spawn(robot_with(min_angle=-3.0, max_angle=3.5, min=0.01))
         robot.set_pose(Pose((0.1, 0.2, 0.0), from_rpy(*tilt, 0.5)))
         sensor = robot.sensor('head_hokuyo_sensor')
@@ -193,18 +215,28 @@ def test_no_ray_misses_a_shape_that_it_meets(monkeypatch, tilt):
 def test_spawned_model_is_seen_until_deleted(scene):
     sensor = scene.spawn(ROBOT).sensor('head_hokuyo_sensor')
     before = sensor.read().ranges
-    scene.spawn('<sdf version="1.6"><model name="wall"><static>1</static><link name="l"><collision '
-                'name="c"><geometry><box><size>.1 9 2</size></box></geometry></collision></link>'
-                '</model></sdf>', x=1.0)
+    scene.spawn(
+        '<sdf version="1.6"><model name="wall"><static>1</static><link name="l"><collision '
+        'name="c"><geometry><box><size>.1 9 2</size></box></geometry></collision></link>'
+        '</model></sdf>',
+        x=1.0,
+    )
     assert np.isfinite(sensor.read().ranges).sum() > 500
     scene.delete('wall')
     assert np.array_equal(sensor.read().ranges, before)
 
 
-@pytest.mark.parametrize(('rate', 'times'), [
-    (40, [25, 50, 75, 100]), (30, [34, 67, 100, 134]), (0, [1, 2, 3, 4]), (-5, [1, 2, 3, 4]),
-    (2000, [1, 2, 3, 4]), (7, [143, 286, 429, 572]),
-])
+@pytest.mark.parametrize(
+    ('rate', 'times'),
+    [
+        (40, [25, 50, 75, 100]),
+        (30, [34, 67, 100, 134]),
+        (0, [1, 2, 3, 4]),
+        (-5, [1, 2, 3, 4]),
+        (2000, [1, 2, 3, 4]),
+        (7, [143, 286, 429, 572]),
+    ],
+)
 def test_readings_have_the_mean_rate_at_ends_of_steps(scene, rate, times):
     sensor = scene.spawn(robot_with(update_rate=rate, samples=3)).sensor('head_hokuyo_sensor')
     found = stamped(scene, sensor)
@@ -213,8 +245,12 @@ def test_readings_have_the_mean_rate_at_ends_of_steps(scene, rate, times):
 
 
 def test_rate_of_a_sensor_does_not_depend_on_others_or_readers(scene):
-    sensors = [scene.spawn(robot_with(update_rate=rate, samples=3), f'r{rate}', x=rate)
-               .sensor('head_hokuyo_sensor') for rate in (40, 30, 7)]
+    sensors = [
+        scene.spawn(robot_with(update_rate=rate, samples=3), f'r{rate}', x=rate).sensor(
+            'head_hokuyo_sensor'
+        )
+        for rate in (40, 30, 7)
+    ]
     found = [stamped(scene, sensor) for sensor in sensors[1:]]
     scene.run(500)
     late = stamped(scene, sensors[0])

@@ -15,10 +15,10 @@ from rosbots_description.sim.sensors.ray_mesh import EmbreeTree, RayMesh
 
 EXACT = 1e-4  # [m]
 ROBOT = (ROBOTS / 'laser_nonoise.urdf').read_text(encoding='utf-8')
-ROOM = '''<sdf version="1.6"><model name="m"><static>{static}</static><pose>{pose}</pose>
+ROOM = """<sdf version="1.6"><model name="m"><static>{static}</static><pose>{pose}</pose>
 <link name="l"><collision name="c"><pose>0.1 0 0 0 0 0.2</pose><laser_retro>7</laser_retro>
 <geometry><mesh><uri>{uri}</uri><scale>1 1 {scale}</scale></mesh></geometry></collision></link>
-</model></sdf>'''
+</model></sdf>"""
 
 
 def box(x, y, z):
@@ -65,8 +65,9 @@ def folder(tmp_path_factory):
     """Return a folder with the meshes."""
     made = tmp_path_factory.mktemp('meshes')
     for name, triangles in MESHES.items():
-        corners = ''.join('v {:.17g} {:.17g} {:.17g}\n'.format(*corner)
-                          for corner in triangles.reshape(-1, 3))
+        corners = ''.join(
+            'v {:.17g} {:.17g} {:.17g}\n'.format(*corner) for corner in triangles.reshape(-1, 3)
+        )
         faces = ''.join(f'f {i} {i + 1} {i + 2}\n' for i in range(1, 3 * len(triangles), 3))
         (made / f'{name}.obj').write_text(corners + faces)
     return made
@@ -92,8 +93,9 @@ def reference(triangles, origins, ways):
 def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, caster, name, scale, pose):
     with closing(World()) as world:
         robot = world.spawn(ROBOT)
-        model = world.spawn(ROOM.format(static=1, pose=pose, uri=folder / f'{name}.obj',
-                                        scale=scale))
+        model = world.spawn(
+            ROOM.format(static=1, pose=pose, uri=folder / f'{name}.obj', scale=scale)
+        )
         sensor = robot.sensor('head_hokuyo_sensor')
         scan = sensor.read()
         frame = model.links['l'].collisions['c'].pose
@@ -101,8 +103,9 @@ def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, caster, name, scale, po
     corners = (MESHES[name] * (1.0, 1.0, float(scale))).reshape(-1, 3)
     placed = [compose(frame, Pose(tuple(corner))).position for corner in corners.tolist()]
     ways = np.array([rotate(place.orientation, way) for way in sensor.fan.ways.T.tolist()])
-    expected = reference(np.array(placed).reshape(-1, 3, 3),
-                         np.repeat([place.position], len(ways), axis=0), ways)
+    expected = reference(
+        np.array(placed).reshape(-1, 3, 3), np.repeat([place.position], len(ways), axis=0), ways
+    )
     assert np.isfinite(expected).sum() > 20
     edges = np.isinf(expected) != np.isinf(scan.ranges)
     assert edges.sum() <= 2  # where a ray grazes
@@ -114,8 +117,9 @@ def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, caster, name, scale, po
 def test_moving_mesh_is_hit_at_its_pose(folder, caster):
     with closing(World()) as world:
         sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')
-        model = world.spawn(ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.obj',
-                                        scale=1))
+        model = world.spawn(
+            ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.obj', scale=1)
+        )
         for x in (3.0, 500.0, 20.0):
             model.set_pose(Pose((x, 0.0, 0.0), from_rpy(0.0, 0.0, -0.2)))
             scan = sensor.read()

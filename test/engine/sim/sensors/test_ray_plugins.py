@@ -13,9 +13,11 @@ from rosbots_description.sim.sensors.noise import gaussian
 
 RECORDINGS = recordings('ray_plugins')
 EXACT = 1e-5  # [m]
-WALL = ('<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
-        '<collision name="c"><geometry><box><size>.1 9 2</size></box></geometry>'
-        '</collision></link></model></sdf>')
+WALL = (
+    '<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
+    '<collision name="c"><geometry><box><size>.1 9 2</size></box></geometry>'
+    '</collision></link></model></sdf>'
+)
 
 
 def reading_of(robot, library, output):
@@ -30,7 +32,8 @@ def readings_of(world, robot, library, output, steps):
     """Return times [ms] and readings that a plugin sends in so many steps."""
     found = []
     robot.plugin(library).outputs[output].connect(
-        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading))
+    )
     world.run(steps)
     return found
 

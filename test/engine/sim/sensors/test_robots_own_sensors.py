@@ -82,8 +82,10 @@ def test_the_bumper_feels_a_wall_with_both_decks_and_nothing_before(spawn, monke
     assert not any(found)
     world.run(2000)
     touches = {(touch.first.rpartition('__')[2], touch.second) for touch in found[-1]}
-    assert touches == {(f'{deck}_link_collision{number}', 'walls::link::east')
-                       for deck, number in (('base', ''), ('base_second', '_5'))}
+    assert touches == {
+        (f'{deck}_link_collision{number}', 'walls::link::east')
+        for deck, number in (('base', ''), ('base_second', '_5'))
+    }
 
 
 def test_camera_sees_the_line_in_front_of_the_robot(spawn):

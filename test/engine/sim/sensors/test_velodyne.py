@@ -11,17 +11,19 @@ from sensor_msgs.point_cloud2 import read_points
 from rosbots_description.ros_api.adapters.ray_sensors import ring_cloud_message
 from rosbots_description.sim.public.world import World
 
-ROBOT = '''<sdf version="1.6"><model name="car"><static>1</static><link name="l">
+ROBOT = """<sdf version="1.6"><model name="car"><static>1</static><link name="l">
 <sensor name="velodyne" type="{kind}"><update_rate>10</update_rate><ray><scan>
 <horizontal><samples>8</samples><resolution>1</resolution><min_angle>-1.5</min_angle>
 <max_angle>1.5</max_angle></horizontal>
 <vertical><samples>3</samples><resolution>1</resolution><min_angle>-0.2</min_angle>
 <max_angle>0.2</max_angle></vertical></scan><range><min>0.3</min><max>20</max></range></ray>
 <plugin name="plugin" filename="libgazebo_ros_velodyne_{library}.so">{tags}</plugin>
-</sensor></link></model></sdf>'''
-WALL = ('<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
-        '<collision name="c"><laser_retro>{retro}</laser_retro><geometry><box><size>.2 {wide} 9'
-        '</size></box></geometry></collision></link></model></sdf>')
+</sensor></link></model></sdf>"""
+WALL = (
+    '<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
+    '<collision name="c"><laser_retro>{retro}</laser_retro><geometry><box><size>.2 {wide} 9'
+    '</size></box></geometry></collision></link></model></sdf>'
+)
 YAWS, PITCHES = np.linspace(-1.5, 1.5, 8), np.linspace(-0.2, 0.2, 3)
 
 
@@ -44,11 +46,13 @@ def cloud_of(world, tags='', library='laser', kind='ray'):
 def test_points_are_on_the_surface_ordered_by_azimuth_and_ring(world, library, kind):
     points, is_dense = cloud_of(world, library=library, kind=kind)
     met = [(yaw, pitch) for yaw in YAWS if abs(2 * math.tan(yaw)) < 2 for pitch in PITCHES]
-    expected = [(2.0, 2.0 * math.tan(yaw), 2.0 * math.tan(pitch) / math.cos(yaw))
-                for yaw, pitch in met]
+    expected = [
+        (2.0, 2.0 * math.tan(yaw), 2.0 * math.tan(pitch) / math.cos(yaw)) for yaw, pitch in met
+    ]
     found = points[0]
     assert np.column_stack([found[axis] for axis in 'xyz']) == pytest.approx(
-        np.array(expected), abs=1e-5)
+        np.array(expected), abs=1e-5
+    )
     assert found['ring'].tolist() == [0, 1, 2] * (len(met) // 3)
     assert set(found['intensity']) == {7.0}
     assert is_dense
@@ -59,17 +63,27 @@ def test_organised_cloud_has_a_column_for_each_ring_and_nan_without_a_hit(world)
     assert points.shape == (8, 3)
     assert not is_dense
     assert np.isnan(points['x']).all(axis=1).tolist() == [
-        bool(abs(2 * math.tan(yaw)) >= 2) for yaw in YAWS]
+        bool(abs(2 * math.tan(yaw)) >= 2) for yaw in YAWS
+    ]
     assert (points['ring'] == (0, 1, 2)).all()
 
 
-@pytest.mark.parametrize(('tags', 'least', 'most'), [
-    ('<min_range>2.2</min_range>', 2.2, 20.0), ('<max_range>2.2</max_range>', 0.3, 2.2),
-    ('<max_range>99</max_range><min_range>0</min_range>', 0.3, 20.0)])
+@pytest.mark.parametrize(
+    ('tags', 'least', 'most'),
+    [
+        ('<min_range>2.2</min_range>', 2.2, 20.0),
+        ('<max_range>2.2</max_range>', 0.3, 2.2),
+        ('<max_range>99</max_range><min_range>0</min_range>', 0.3, 20.0),
+    ],
+)
 def test_points_are_within_the_tighter_limits(world, tags, least, most):
     points = cloud_of(world, tags)[0][0]
-    ranges = [2.0 / math.cos(yaw) / math.cos(pitch) for yaw in YAWS if abs(math.tan(yaw)) < 1
-              for pitch in PITCHES]
+    ranges = [
+        2.0 / math.cos(yaw) / math.cos(pitch)
+        for yaw in YAWS
+        if abs(math.tan(yaw)) < 1
+        for pitch in PITCHES
+    ]
     found = np.sqrt(points['x'] ** 2 + points['y'] ** 2 + points['z'] ** 2)
     assert found == pytest.approx([one for one in ranges if least < one < most], abs=1e-5)
 
@@ -95,8 +109,13 @@ def test_the_message_has_upstreams_fields():
         world.spawn(WALL.format(retro=7, wide=4), 'wall', x=2.1)
         message = ring_cloud_message(cloud_of(world))
     assert [(field.name, field.offset, field.datatype) for field in message.fields] == [
-        ('x', 0, 7), ('y', 4, 7), ('z', 8, 7), ('intensity', 12, 7), ('ring', 16, 4),
-        ('time', 18, 7)]
+        ('x', 0, 7),
+        ('y', 4, 7),
+        ('z', 8, 7),
+        ('intensity', 12, 7),
+        ('ring', 16, 4),
+        ('time', 18, 7),
+    ]
     assert (message.point_step, message.height, message.row_step) == (22, 1, 22 * message.width)
     x, _, _, intensity, ring, time = next(iter(read_points(message)))
     assert (x, intensity, ring, time) == (pytest.approx(2.0), 7.0, 0, 0.0)
@@ -118,8 +137,14 @@ def test_empty_range_of_limits_is_reported(world, caplog):
     assert 'finds no points: <min_range> leaves those beyond 5 m' in caplog.text
 
 
-@pytest.mark.parametrize('tags', ['<gaussianNoise>nan</gaussianNoise>', '<min_range>x</min_range>',
-                                  '<gaussianNoise>-1</gaussianNoise>'])
+@pytest.mark.parametrize(
+    'tags',
+    [
+        '<gaussianNoise>nan</gaussianNoise>',
+        '<min_range>x</min_range>',
+        '<gaussianNoise>-1</gaussianNoise>',
+    ],
+)
 def test_plugin_with_an_invalid_number_is_left_out_with_an_error(world, tags, caplog):
     robot = world.spawn(ROBOT.format(tags=tags, library='laser', kind='ray'), 'car')
     assert robot.plugins == {}

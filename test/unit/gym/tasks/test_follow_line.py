@@ -11,8 +11,9 @@ from rosbots_description.sim.description import Box
 
 
 def piece(x, y, yaw, length):
-    return SimpleNamespace(pose=Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw)),
-                           geometry=Box((length, 0.05, 0.001)))
+    return SimpleNamespace(
+        pose=Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw)), geometry=Box((length, 0.05, 0.001))
+    )
 
 
 # From the origin 2 m along x, then 3 m along y.
@@ -25,11 +26,22 @@ def line(pieces):
     return Line(SimpleNamespace(model=lambda _: model))
 
 
-@pytest.mark.parametrize(('x', 'y', 'way', 'apart'), [
-    (0.5, 0.0, 0.5, 0.0), (0.5, 0.3, 0.5, 0.3), (0.5, -0.3, 0.5, 0.3), (1.9, 0.0, 1.9, 0.0),
-    (-1.0, 0.0, 0.0, 1.0), (2.0, 2.9, 4.9, 0.0), (1.6, 1.0, 3.0, 0.4), (2.3, 2.0, 4.0, 0.3),
-    (2.0, 4.0, 5.0, 1.0), (2.0, -0.5, 2.0, 0.5), (3.0, 4.0, 5.0, math.sqrt(2.0)),
-])
+@pytest.mark.parametrize(
+    ('x', 'y', 'way', 'apart'),
+    [
+        (0.5, 0.0, 0.5, 0.0),
+        (0.5, 0.3, 0.5, 0.3),
+        (0.5, -0.3, 0.5, 0.3),
+        (1.9, 0.0, 1.9, 0.0),
+        (-1.0, 0.0, 0.0, 1.0),
+        (2.0, 2.9, 4.9, 0.0),
+        (1.6, 1.0, 3.0, 0.4),
+        (2.3, 2.0, 4.0, 0.3),
+        (2.0, 4.0, 5.0, 1.0),
+        (2.0, -0.5, 2.0, 0.5),
+        (3.0, 4.0, 5.0, math.sqrt(2.0)),
+    ],
+)
 def test_nearest_point_is_on_the_nearest_piece_not_beyond_its_end(x, y, way, apart):
     assert line(LINE).nearest(x, y) == pytest.approx((way, apart))
 

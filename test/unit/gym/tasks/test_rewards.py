@@ -47,8 +47,9 @@ def made(kind):
 
 
 def piece(x, y, yaw, length):
-    return SimpleNamespace(pose=Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw)),
-                           geometry=Box((length, 0.05, 0.001)))
+    return SimpleNamespace(
+        pose=Pose((x, y, 0.0), from_rpy(0.0, 0.0, yaw)), geometry=Box((length, 0.05, 0.001))
+    )
 
 
 def follow(*pieces):
@@ -63,14 +64,24 @@ def follow(*pieces):
 @pytest.fixture
 def follow_line():
     """Return the task with a square of 4 m for a line, which begins at the origin along x."""
-    return follow(piece(2.0, 0.0, 0.0, 4.0), piece(4.0, 2.0, math.pi / 2.0, 4.0),
-                  piece(2.0, 4.0, math.pi, 4.0), piece(0.0, 2.0, -math.pi / 2.0, 4.0))
+    return follow(
+        piece(2.0, 0.0, 0.0, 4.0),
+        piece(4.0, 2.0, math.pi / 2.0, 4.0),
+        piece(2.0, 4.0, math.pi, 4.0),
+        piece(0.0, 2.0, -math.pi / 2.0, 4.0),
+    )
 
 
 def test_way_along_a_closed_line_is_rewarded_across_its_end_and_costs_backwards(follow_line):
     follow_line.begin({'start': (0.0, 0.5, 0.0)})
-    for (x, y), ahead in (((0.0, 0.2), 0.3), ((0.3, 0.0), 0.5), ((1.0, 0.0), 0.7),
-                          ((0.5, 0.0), -0.5), ((0.0, 0.1), -0.6), ((2.0, 4.0), -5.9)):
+    for (x, y), ahead in (
+        ((0.0, 0.2), 0.3),
+        ((0.3, 0.0), 0.5),
+        ((1.0, 0.0), 0.7),
+        ((0.5, 0.0), -0.5),
+        ((0.0, 0.1), -0.6),
+        ((2.0, 4.0), -5.9),
+    ):
         assert stands(follow_line, x, y) == (pytest.approx(ahead), False)
     assert follow_line.truth()['driven'] == pytest.approx(-5.5)
     assert follow_line.truth()['line_distance'] == pytest.approx(0.0)
@@ -88,11 +99,15 @@ def test_reward_falls_to_half_beside_the_line_which_is_lost_at_half_a_metre(foll
 def test_start_is_up_to_15_cm_beside_a_piece_and_03_rad_askew(shift, turn):
     task = follow(piece(0.0, 0.0, 0.0, 4.0), piece(2.0, 1.0, 0.5, 4.0))
     task._np_random = SimpleNamespace(
-        uniform=lambda least, most, count: least + (most - least) / 2.0 * (
-            1.0 + np.array((shift, turn))), integers=lambda count: count - 1)
+        uniform=lambda least, most, count: (
+            least + (most - least) / 2.0 * (1.0 + np.array((shift, turn)))
+        ),
+        integers=lambda count: count - 1,
+    )
     task.begin({})
-    assert task.pose == pytest.approx((2.0 - 0.15 * shift * math.sin(0.5),
-                                       1.0 + 0.15 * shift * math.cos(0.5), 0.5 + 0.3 * turn))
+    assert task.pose == pytest.approx(
+        (2.0 - 0.15 * shift * math.sin(0.5), 1.0 + 0.15 * shift * math.cos(0.5), 0.5 + 0.3 * turn)
+    )
 
 
 def test_the_way_towards_the_goal_is_rewarded_and_1_there():
@@ -125,8 +140,14 @@ def test_each_square_of_half_a_metre_is_rewarded_once():
     task = made(Wander)
     task._stage.free = [(0.0, 0.0, 0.0)]
     task.begin({})
-    for x, y, reward in ((0.24, 0.0, 0.0), (0.26, 0.0, 1.0), (0.74, 0.24, 0.0), (0.76, 0.0, 1.0),
-                         (0.5, -0.26, 1.0), (0.0, 0.0, 0.0)):
+    for x, y, reward in (
+        (0.24, 0.0, 0.0),
+        (0.26, 0.0, 1.0),
+        (0.74, 0.24, 0.0),
+        (0.76, 0.0, 1.0),
+        (0.5, -0.26, 1.0),
+        (0.0, 0.0, 0.0),
+    ):
         assert stands(task, x, y) == (reward, False)
     assert task.truth()['visited'] == 4 * 0.25
     task._stage.touches = True

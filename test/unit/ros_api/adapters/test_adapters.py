@@ -30,8 +30,9 @@ def _model(plugin):
 @pytest.fixture
 def server():
     jobs = []
-    return SimpleNamespace(registrar=SimpleNamespace(post=jobs.append), jobs=jobs,
-                           static_frames=StaticFrames())
+    return SimpleNamespace(
+        registrar=SimpleNamespace(post=jobs.append), jobs=jobs, static_frames=StaticFrames()
+    )
 
 
 @pytest.fixture
@@ -41,21 +42,25 @@ def adapter(server):
     made.close()
 
 
-@pytest.mark.parametrize(('tags', 'left'), [
-    ({'robotNamespace': 'a b'}, {'/tf', '/joint_states'}),
-    ({'commandTopic': ''}, {'/odom'}),
-    ({'commandTopic': '/-1'}, {'/odom'}),
-    ({'commandTopic': '/../../../etc/passwd'}, {'/odom'}),
-    ({'odometryTopic': '~odom'}, {'/cmd_vel'}),
-    ({'odometryTopic': 'o d'}, {'/cmd_vel'}),
-])
+@pytest.mark.parametrize(
+    ('tags', 'left'),
+    [
+        ({'robotNamespace': 'a b'}, {'/tf', '/joint_states'}),
+        ({'commandTopic': ''}, {'/odom'}),
+        ({'commandTopic': '/-1'}, {'/odom'}),
+        ({'commandTopic': '/../../../etc/passwd'}, {'/odom'}),
+        ({'odometryTopic': '~odom'}, {'/cmd_vel'}),
+        ({'odometryTopic': 'o d'}, {'/cmd_vel'}),
+    ],
+)
 def test_plugin_is_without_topics_whose_names_ros_rejects(server, caplog, tags, left):
     model, adapters = _model(make(**tags)), Adapters(server)
     caplog.clear()
     adapters.model_spawned(model)
     (record,) = caplog.records
     assert record.message.startswith(
-        "model 'robot', plugin 'drive': not opened, since ROS has no such names: '/")
+        "model 'robot', plugin 'drive': not opened, since ROS has no such names: '/"
+    )
     (made,) = adapters._adapters._open.values()
     names = {one.name for one in made.endpoints}
     assert names & left
@@ -98,12 +103,25 @@ class Sonar(PeriodicPlugin):
 @pytest.fixture
 def sonar(monkeypatch):
     closed = []
-    monkeypatch.setattr(registry, '_TOPICS', {Sonar: (
-        Publishes('range', 'range', Range, convert=lambda reading: Range(range=reading),
-                  frame='<frameName>', queue=3, latch=True),
-        Publishes('raw', '<frameName>/raw', Float64, convert=Float64),
-        Offers('calibrate', lambda _adapter, name: lambda: closed.append(name)),
-    )})
+    monkeypatch.setattr(
+        registry,
+        '_TOPICS',
+        {
+            Sonar: (
+                Publishes(
+                    'range',
+                    'range',
+                    Range,
+                    convert=lambda reading: Range(range=reading),
+                    frame='<frameName>',
+                    queue=3,
+                    latch=True,
+                ),
+                Publishes('raw', '<frameName>/raw', Float64, convert=Float64),
+                Offers('calibrate', lambda _adapter, name: lambda: closed.append(name)),
+            )
+        },
+    )
     wire = Wire(monkeypatch)
     monkeypatch.setattr(adapter_module, 'find_tf_prefix', lambda _: 'r1')
     plugin = make_drive(Sonar, fake_model(), robotNamespace='front')
@@ -170,4 +188,6 @@ def test_published_transforms_move_external_static_frames(monkeypatch):
     run(plugin, 10)
     edges = [edge for message in wire.publishers['/tf'].sent for edge in message.transforms]
     assert [(edge.header.frame_id, edge.child_frame_id) for edge in edges] == [
-        ('odom', 'base_footprint'), ('odom', 'root')]
+        ('odom', 'base_footprint'),
+        ('odom', 'root'),
+    ]

@@ -83,8 +83,11 @@ def test_joint_states_have_no_frame_and_no_efforts(wire, joints):
 
 
 def test_trajectory_is_converted_with_times_in_nanoseconds():
-    message = JointTrajectory(Header(stamp=Time(3, 5), frame_id='a'), ['j'], [
-        JointTrajectoryPoint(positions=[0.5], time_from_start=Duration(1, 7))])
+    message = JointTrajectory(
+        Header(stamp=Time(3, 5), frame_id='a'),
+        ['j'],
+        [JointTrajectoryPoint(positions=[0.5], time_from_start=Duration(1, 7))],
+    )
     assert read_trajectory(message) == ('a', 3_000_000_005, ['j'], [([0.5], 1_000_000_007)])
     message.points[0].positions = [NAN]
     with pytest.raises(ValueError, match='positions of point 0 nan; numbers must be finite'):
@@ -102,15 +105,18 @@ def test_wrench_is_converted_to_two_finite_vectors():
 STEP = Pose((1.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize(('edges', 'x'), [
-    ({}, None),
-    ({'goal': ('world', STEP)}, 1.0),
-    ({'goal': ('a', STEP), 'a': ('world', STEP)}, 2.0),
-    ({'goal': ('map', STEP), 'world': ('map', STEP)}, 0.0),
-    ({'world': ('goal', STEP)}, -1.0),
-    ({'goal': ('odom', STEP)}, None),
-    ({'goal': ('a', STEP), 'a': ('goal', STEP)}, None),
-])
+@pytest.mark.parametrize(
+    ('edges', 'x'),
+    [
+        ({}, None),
+        ({'goal': ('world', STEP)}, 1.0),
+        ({'goal': ('a', STEP), 'a': ('world', STEP)}, 2.0),
+        ({'goal': ('map', STEP), 'world': ('map', STEP)}, 0.0),
+        ({'world': ('goal', STEP)}, -1.0),
+        ({'goal': ('odom', STEP)}, None),
+        ({'goal': ('a', STEP), 'a': ('goal', STEP)}, None),
+    ],
+)
 def test_transform_is_looked_up_along_the_tf_tree(edges, x):
     pose = pose_between('world', 'goal', edges)
     assert (pose and pose.position[0]) == x

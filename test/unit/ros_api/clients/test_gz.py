@@ -15,10 +15,14 @@ from rosbots_description.sim import from_rpy
 
 STATE = SimpleNamespace(
     pose=Pose(Point(1.0, -2.5, 1e-9), Quaternion(*from_rpy(0.0, -1e-12, 0.25))),
-    twist=Twist(linear=Vector3(3.0, 0.0, 0.0)))
+    twist=Twist(linear=Vector3(3.0, 0.0, 0.0)),
+)
 PHYSICS = GetPhysicsPropertiesResponse(
-    time_step=0.001, max_update_rate=1000.0, gravity=Vector3(0.0, 0.0, -9.8),
-    ode_config=ODEPhysics(sor_pgs_iters=50, max_contacts=20))
+    time_step=0.001,
+    max_update_rate=1000.0,
+    gravity=Vector3(0.0, 0.0, -9.8),
+    ode_config=ODEPhysics(sor_pgs_iters=50, max_contacts=20),
+)
 
 
 class Simulator:
@@ -40,15 +44,20 @@ def do(simulator, *arguments, **options):
     return list(gz.COMMANDS[flags.command](simulator, flags, **options))
 
 
-@pytest.mark.parametrize(('options', 'services'), [
-    (['-p', '1'], ['pause_physics']),
-    (['-p', '0'], ['unpause_physics']),
-    (['-s'], ['pause_physics', 'step']),
-    (['-r'], ['reset_simulation']),
-    (['-o'], ['reset_world']),
-    (['-r', '-m', '2', '-p', '0'],
-     ['unpause_physics', 'pause_physics', 'step', 'reset_simulation']),
-])
+@pytest.mark.parametrize(
+    ('options', 'services'),
+    [
+        (['-p', '1'], ['pause_physics']),
+        (['-p', '0'], ['unpause_physics']),
+        (['-s'], ['pause_physics', 'step']),
+        (['-r'], ['reset_simulation']),
+        (['-o'], ['reset_world']),
+        (
+            ['-r', '-m', '2', '-p', '0'],
+            ['unpause_physics', 'pause_physics', 'step', 'reset_simulation'],
+        ),
+    ],
+)
 def test_world_calls_services_in_gazebos_order(options, services):
     simulator = Simulator()
     assert do(simulator, 'world', *options) == []
@@ -94,7 +103,7 @@ def test_a_model_is_spawned_from_a_file_under_the_name_that_is_given(tmp_path):
     file.write_text('<sdf version="1.6"><model name="other"/></sdf>')
     simulator = Simulator()
     assert do(simulator, 'model', '-f', str(file), '-m', 'box', '-z', '2') == []
-    (service, request), = simulator.calls
+    ((service, request),) = simulator.calls
     assert (service, request['model_name']) == ('spawn_sdf_model', 'box')
     assert request['model_xml'] == file.read_text()
     assert request['initial_pose'].position == Point(0.0, 0.0, 2.0)
@@ -102,13 +111,22 @@ def test_a_model_is_spawned_from_a_file_under_the_name_that_is_given(tmp_path):
 
 def test_info_names_joints_and_links_by_their_scoped_names():
     simulator = Simulator(
-        get_model_state=STATE, get_model_properties=SimpleNamespace(
-            is_static=False, joint_names=['hinge'], body_names=['arm']))
+        get_model_state=STATE,
+        get_model_properties=SimpleNamespace(
+            is_static=False, joint_names=['hinge'], body_names=['arm']
+        ),
+    )
     lines = do(simulator, 'model', '-m', 'box', '-i')
     assert lines[:2] == ['name: "box"', 'is_static: false']
     assert '    y: -2.5' in lines
-    assert lines[-6:] == ['joint {', '  name: "box::hinge"', '}', 'link {',
-                          '  name: "box::arm"', '}']
+    assert lines[-6:] == [
+        'joint {',
+        '  name: "box::hinge"',
+        '}',
+        'link {',
+        '  name: "box::arm"',
+        '}',
+    ]
 
 
 def test_physics_changes_what_is_given_and_keeps_the_rest():
@@ -125,17 +143,26 @@ def stats(times, *options, paused=False):
     """Return what `gz stats` prints of these simulated times, 0.25 s of wall time apart."""
     simulator = Simulator(
         get_world_properties=(SimpleNamespace(sim_time=time) for time in times),
-        get_physics_properties=SimpleNamespace(pause=paused))
+        get_physics_properties=SimpleNamespace(pause=paused),
+    )
     wall = count(100.0, 0.25)
     duration = str(0.25 * (len(times) - 1) + 0.01)
-    return do(simulator, 'stats', '-d', duration, *options,
-              clock=lambda: next(wall), sleep=lambda _seconds: None)
+    return do(
+        simulator,
+        'stats',
+        '-d',
+        duration,
+        *options,
+        clock=lambda: next(wall),
+        sleep=lambda _seconds: None,
+    )
 
 
 def test_stats_prints_gazebos_line_until_the_duration_is_over():
     assert stats([5.0, 5.125, 5.25, 5.25]) == [
         'Factor[0.50] SimTime[5.12] RealTime[0.50] Paused[F]',
-        'Factor[0.50] SimTime[5.25] RealTime[0.75] Paused[F]']
+        'Factor[0.50] SimTime[5.25] RealTime[0.75] Paused[F]',
+    ]
 
 
 def test_stats_for_a_plot_has_a_heading():
@@ -173,5 +200,6 @@ def test_names_of_models_do_nothing_to_the_terminal(monkeypatch, capsys, fails):
     assert service_program.run('gz model', act, []) == int(fails)
     printed, said = capsys.readouterr()
     escaped = r'\x1b]0;title\x07\x9b2J\u202e'
-    assert (printed, said) == (('', f'gz model: {escaped}\n') if fails
-                               else (f'a{escaped}\n\tb\n', ''))
+    assert (printed, said) == (
+        ('', f'gz model: {escaped}\n') if fails else (f'a{escaped}\n\tb\n', '')
+    )

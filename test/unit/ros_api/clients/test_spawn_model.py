@@ -24,8 +24,23 @@ def test_defaults_are_gazebos():
 
 
 def test_command_line_of_the_article_with_remappings_of_roslaunch():
-    flags = parse_arguments(['-urdf', '-param', 'robot_description', '-model', 'rosbots', '-x', '0',
-                             '-y', '-1.5', '-z', '0.5', '__name:=mybot_spawn', '__log:=/x.log'])
+    flags = parse_arguments(
+        [
+            '-urdf',
+            '-param',
+            'robot_description',
+            '-model',
+            'rosbots',
+            '-x',
+            '0',
+            '-y',
+            '-1.5',
+            '-z',
+            '0.5',
+            '__name:=mybot_spawn',
+            '__log:=/x.log',
+        ]
+    )
     assert (flags.model, flags.y, flags.z) == ('rosbots', -1.5, 0.5)
 
 
@@ -47,24 +62,27 @@ def test_joints_may_be_repeated():
 
 def test_model_of_the_database_is_searched_on_the_model_path(tmp_path):
     (tmp_path / 'model.sdf').write_text(
-        '<sdf version="1.6"><model name="d"><static>true</static><link name="leaf"/></model></sdf>')
+        '<sdf version="1.6"><model name="d"><static>true</static><link name="leaf"/></model></sdf>'
+    )
     flags = parse_arguments(['-sdf', '-database', 'door', '-model', 'my_door'])
-    spec, _ = load_sdf(spawn_model._fetch(flags), 'my_door',
-                       find_model={'door': str(tmp_path)}.get)
+    spec, _ = load_sdf(spawn_model._fetch(flags), 'my_door', find_model={'door': str(tmp_path)}.get)
     assert [link.name for link in spec.links] == ['leaf']
 
 
-@pytest.mark.parametrize('arguments, error_message', [
-    (['-urdf', '-param', 'p'], 'required: -model'),
-    (['-param', 'p', '-model', 'm'], '-urdf -sdf is required'),
-    (['-urdf', '-model', 'm'], '-file -param -database -stdin is required'),
-    (['-urdf', '-sdf', '-param', 'p', '-model', 'm'], 'not allowed with'),
-    (['-urdf', '-param', 'p', '-file', 'f', '-model', 'm'], 'not allowed with'),
-    ([*MINIMAL, '-x', 'far'], "'far' is not a finite number"),
-    ([*MINIMAL, '-z', 'nan'], "'nan' is not a finite number"),
-    ([*MINIMAL, '-gazebo'], '-gazebo'),
-    ([*MINIMAL, 'robot.urdf'], 'unrecognized arguments: robot.urdf'),
-])
+@pytest.mark.parametrize(
+    'arguments, error_message',
+    [
+        (['-urdf', '-param', 'p'], 'required: -model'),
+        (['-param', 'p', '-model', 'm'], '-urdf -sdf is required'),
+        (['-urdf', '-model', 'm'], '-file -param -database -stdin is required'),
+        (['-urdf', '-sdf', '-param', 'p', '-model', 'm'], 'not allowed with'),
+        (['-urdf', '-param', 'p', '-file', 'f', '-model', 'm'], 'not allowed with'),
+        ([*MINIMAL, '-x', 'far'], "'far' is not a finite number"),
+        ([*MINIMAL, '-z', 'nan'], "'nan' is not a finite number"),
+        ([*MINIMAL, '-gazebo'], '-gazebo'),
+        ([*MINIMAL, 'robot.urdf'], 'unrecognized arguments: robot.urdf'),
+    ],
+)
 def test_wrong_usage_exits_with_2_and_names_the_flag(arguments, error_message, capsys):
     with pytest.raises(SystemExit) as end:
         parse_arguments(arguments)
@@ -86,19 +104,24 @@ def test_xml_is_sent_as_ascii_without_declaration_and_comments():
 
 
 def test_package_to_model_changes_only_meshes():
-    text = ('<robot><mesh filename="package://p/a.dae"/><mesh filename="file:///package://b"/>'
-            '<texture filename="package://p/t.png"/></robot>')
+    text = (
+        '<robot><mesh filename="package://p/a.dae"/><mesh filename="file:///package://b"/>'
+        '<texture filename="package://p/t.png"/></robot>'
+    )
     sent = canonical_xml(text, package_to_model=True)
     assert '<mesh filename="model://p/a.dae"' in sent
     assert '"file:///package://b"' in sent and '"package://p/t.png"' in sent
     assert 'model://' not in canonical_xml(text)
 
 
-@pytest.mark.parametrize('text, error_message', [
-    (b'<robot name="x"><link name="a">', 'Invalid XML: no element found: line 1, column 31'),
-    (b'hello world', 'Invalid XML: syntax error: line 1, column 0'),
-    (b'<?xml version="1.0" encoding="klingon"?><a b="\xe9"/>', 'Invalid XML: unknown encoding'),
-])
+@pytest.mark.parametrize(
+    'text, error_message',
+    [
+        (b'<robot name="x"><link name="a">', 'Invalid XML: no element found: line 1, column 31'),
+        (b'hello world', 'Invalid XML: syntax error: line 1, column 0'),
+        (b'<?xml version="1.0" encoding="klingon"?><a b="\xe9"/>', 'Invalid XML: unknown encoding'),
+    ],
+)
 def test_invalid_xml_is_rejected_with_its_location(text, error_message):
     with pytest.raises(SourceError, match=error_message):
         canonical_xml(text)

@@ -40,18 +40,25 @@ def test_an_element_that_is_not_there_is_nan():
     assert math.isnan(number_getter(ModelStates, 'twist[7]/linear/x')(ModelStates()))
 
 
-@pytest.mark.parametrize(('kind', 'path', 'sentence'), [
-    (Odometry, 'twist/foo', "TwistWithCovariance has no field 'foo'; it has twist, covariance."),
-    (Odometry, 'twist/twist', "'twist/twist' is not a number but a geometry_msgs/Twist."),
-    (JointState, 'position', "'position' of sensor_msgs/JointState is an array; add an index"),
-    (JointState, 'position[]', "no field 'position\\[\\]'"),
-    (JointState, 'position[-1]', "no field 'position\\[-1\\]'"),
-    (JointState, 'name[0]', "'name\\[0\\]' is not a number but a string."),
-    (Float64, 'data[0]', "'data' of std_msgs/Float64 is no array; leave out \\[0\\]."),
-    (Float64, 'data/x', "float64 has no field 'x'."),
-    (Float64, '', "std_msgs/Float64 has no field ''"),
-    (Float64, '__class__', "std_msgs/Float64 has no field '__class__'"),
-])
+@pytest.mark.parametrize(
+    ('kind', 'path', 'sentence'),
+    [
+        (
+            Odometry,
+            'twist/foo',
+            "TwistWithCovariance has no field 'foo'; it has twist, covariance.",
+        ),
+        (Odometry, 'twist/twist', "'twist/twist' is not a number but a geometry_msgs/Twist."),
+        (JointState, 'position', "'position' of sensor_msgs/JointState is an array; add an index"),
+        (JointState, 'position[]', "no field 'position\\[\\]'"),
+        (JointState, 'position[-1]', "no field 'position\\[-1\\]'"),
+        (JointState, 'name[0]', "'name\\[0\\]' is not a number but a string."),
+        (Float64, 'data[0]', "'data' of std_msgs/Float64 is no array; leave out \\[0\\]."),
+        (Float64, 'data/x', "float64 has no field 'x'."),
+        (Float64, '', "std_msgs/Float64 has no field ''"),
+        (Float64, '__class__', "std_msgs/Float64 has no field '__class__'"),
+    ],
+)
 def test_what_is_no_number_is_told(kind, path, sentence):
     with pytest.raises(SimError, match=sentence):
         number_getter(kind, path)

@@ -64,33 +64,53 @@ def test_a_transform(parent, child):
 
 @pytest.mark.parametrize('ranges', [[1.5, math.inf, 0.1], []])
 def test_a_laser_scan(ranges):
-    message = LaserScan(angle_min=-0.5, angle_max=0.5, angle_increment=0.25, range_min=0.125,
-                        range_max=30.0, ranges=ranges, intensities=[0.0, 1500.0][:len(ranges)])
+    message = LaserScan(
+        angle_min=-0.5,
+        angle_max=0.5,
+        angle_increment=0.25,
+        range_min=0.125,
+        range_max=30.0,
+        ranges=ranges,
+        intensities=[0.0, 1500.0][: len(ranges)],
+    )
     message.header.frame_id, message.header.stamp = 'läser', STAMP
     packed = LaserScanLayout('läser').pack(
-        SEQ, NOW_NS, (-0.5, 0.5, 0.25), (0.125, 30.0), np.array(ranges),
-        np.array(message.intensities))
+        SEQ,
+        NOW_NS,
+        (-0.5, 0.5, 0.25),
+        (0.125, 30.0),
+        np.array(ranges),
+        np.array(message.intensities),
+    )
     assert packed == on_the_wire(message)
 
 
 @pytest.mark.parametrize('points', [[(1.5, math.inf, 0.1), (0.0, -2.0, 3.0)], []])
 def test_a_point_cloud(points):
-    shine = [750.0, 0.0][:len(points)]
-    message = PointCloud(points=[Point32(*point) for point in points],
-                         channels=[ChannelFloat32('', shine)])
+    shine = [750.0, 0.0][: len(points)]
+    message = PointCloud(
+        points=[Point32(*point) for point in points], channels=[ChannelFloat32('', shine)]
+    )
     message.header.frame_id, message.header.stamp = 'laser', STAMP
     packed = PointCloudLayout('laser').pack(
-        SEQ, NOW_NS, np.array(points).reshape(-1, 3), np.array(shine))
+        SEQ, NOW_NS, np.array(points).reshape(-1, 3), np.array(shine)
+    )
     assert packed == on_the_wire(message)
 
 
 def test_an_imu():
     message = Imu()
     message.header.frame_id, message.header.stamp = 'imu_link', STAMP
-    variances = {'orientation': (-1.0, -1.0, 0.5), 'angular_velocity': (1.0, 2.0, 3.0),
-                 'linear_acceleration': (4.0, 5.0, 6.0)}
-    for field, values in (('orientation', POSE.orientation), ('angular_velocity', TWIST.angular),
-                          ('linear_acceleration', TWIST.linear)):
+    variances = {
+        'orientation': (-1.0, -1.0, 0.5),
+        'angular_velocity': (1.0, 2.0, 3.0),
+        'linear_acceleration': (4.0, 5.0, 6.0),
+    }
+    for field, values in (
+        ('orientation', POSE.orientation),
+        ('angular_velocity', TWIST.angular),
+        ('linear_acceleration', TWIST.linear),
+    ):
         for axis, value in zip('xyzw', values, strict=False):
             setattr(getattr(message, field), axis, value)
         getattr(message, f'{field}_covariance')[::4] = variances[field]

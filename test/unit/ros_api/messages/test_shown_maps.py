@@ -63,12 +63,15 @@ def test_of_a_large_map_cells_are_merged_and_none_that_is_occupied_is_lost():
     assert not shown.cells[0, 1:-1, 3].any()
 
 
-@pytest.mark.parametrize(('message', 'sentence'), [
-    (grid([[0, 100]], width=3), 'it has 2 cells instead of 3 x 1'),
-    (grid([[0]], resolution=0.0), 'its resolution is 0 m'),
-    (grid([[0]], resolution=NAN), 'its resolution is nan m'),
-    (grid([[0]], origin=pose(NAN)), 'its origin is nowhere'),
-])
+@pytest.mark.parametrize(
+    ('message', 'sentence'),
+    [
+        (grid([[0, 100]], width=3), 'it has 2 cells instead of 3 x 1'),
+        (grid([[0]], resolution=0.0), 'its resolution is 0 m'),
+        (grid([[0]], resolution=NAN), 'its resolution is nan m'),
+        (grid([[0]], origin=pose(NAN)), 'its origin is nowhere'),
+    ],
+)
 def test_what_is_no_map_is_refused(message, sentence):
     with pytest.raises(SimError, match=sentence):
         shown_reading(message)
@@ -97,12 +100,15 @@ def test_of_a_long_path_some_poses_are_shown():
     assert reading.words == f'{2 * MOST_POSES} poses'
 
 
-@pytest.mark.parametrize(('turn', 'along'), [
-    ((0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0)),
-    ((0.0, 0.0, 2.0, 2.0), (0.0, 1.0, 0.0)),  # not of length 1, as messages may be
-    ((0.0, -math.sqrt(0.5), 0.0, math.sqrt(0.5)), (0.0, 0.0, 1.0)),
-    ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
-])
+@pytest.mark.parametrize(
+    ('turn', 'along'),
+    [
+        ((0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0)),
+        ((0.0, 0.0, 2.0, 2.0), (0.0, 1.0, 0.0)),  # not of length 1, as messages may be
+        ((0.0, -math.sqrt(0.5), 0.0, math.sqrt(0.5)), (0.0, 0.0, 1.0)),
+        ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
+    ],
+)
 def test_poses_are_arrows_along_their_x_axes(turn, along):
     lines = shown_reading(PoseArray(poses=[pose(1.0, turn=turn)])).lines
     (tip, tail), *barbs = lines
@@ -125,8 +131,9 @@ def test_a_goal_is_one_arrow_longer_than_those_of_particles():
     goal = shown_reading(PoseStamped(pose=pose(1.0, 2.0)))
     particle = shown_reading(PoseArray(poses=[pose(1.0, 2.0)]))
     assert goal.words == 'x 1.000, y 2.000 m'
-    assert (np.linalg.norm(goal.lines[0, 0] - goal.lines[0, 1])
-            > np.linalg.norm(particle.lines[0, 0] - particle.lines[0, 1]))
+    assert np.linalg.norm(goal.lines[0, 0] - goal.lines[0, 1]) > np.linalg.norm(
+        particle.lines[0, 0] - particle.lines[0, 1]
+    )
 
 
 def test_each_type_can_be_shown_when_it_is_empty():

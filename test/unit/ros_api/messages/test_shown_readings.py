@@ -28,8 +28,13 @@ from rosbots_description.sim.sensors.shown_readings import GREATEST, MAX_RAYS
 def image(encoding, values, **changes):
     """Return a picture of an array (height, width) or (height, width, channels)."""
     values = np.asarray(values)
-    message = Image(height=values.shape[0], width=values.shape[1], encoding=encoding,
-                    step=values.nbytes // values.shape[0], data=values.tobytes())
+    message = Image(
+        height=values.shape[0],
+        width=values.shape[1],
+        encoding=encoding,
+        step=values.nbytes // values.shape[0],
+        data=values.tobytes(),
+    )
     for name, value in changes.items():
         setattr(message, name, value)
     return message
@@ -39,21 +44,28 @@ def cloud(points, **changes):
     """Return a cloud of points (height, width, 3) without colours."""
     points = np.asarray(points, np.float32)
     height, width, _ = points.shape
-    message = PointCloud2(height=height, width=width, point_step=12, row_step=12 * width,
-                          data=points.tobytes())
+    message = PointCloud2(
+        height=height, width=width, point_step=12, row_step=12 * width, data=points.tobytes()
+    )
     message.header.frame_id = 'eye'
-    message.fields = [PointField(name, 4 * i, PointField.FLOAT32, 1)
-                      for i, name in enumerate('xyz')]
+    message.fields = [
+        PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')
+    ]
     for name, value in changes.items():
         setattr(message, name, value)
     return message
 
 
-@pytest.mark.parametrize(('encoding', 'pixel', 'shown'), [
-    ('rgb8', [1, 2, 3], [1, 2, 3]), ('bgr8', [1, 2, 3], [3, 2, 1]),
-    ('rgba8', [1, 2, 3, 9], [1, 2, 3]), ('bgra8', [1, 2, 3, 9], [3, 2, 1]),
-    ('mono8', [7], [7, 7, 7]),
-])
+@pytest.mark.parametrize(
+    ('encoding', 'pixel', 'shown'),
+    [
+        ('rgb8', [1, 2, 3], [1, 2, 3]),
+        ('bgr8', [1, 2, 3], [3, 2, 1]),
+        ('rgba8', [1, 2, 3, 9], [1, 2, 3]),
+        ('bgra8', [1, 2, 3, 9], [3, 2, 1]),
+        ('mono8', [7], [7, 7, 7]),
+    ],
+)
 def test_pictures_have_their_colours(encoding, pixel, shown):
     values = np.zeros((2, 3, len(pixel)), np.uint8)
     values[1, 2] = pixel
@@ -63,8 +75,10 @@ def test_pictures_have_their_colours(encoding, pixel, shown):
     assert picture[0].max() == 0
 
 
-@pytest.mark.parametrize(('encoding', 'kind', 'big'), [
-    ('32FC1', '<f4', 0), ('32FC1', '>f4', 1), ('16UC1', '<u2', 0), ('mono16', '>u2', 1)])
+@pytest.mark.parametrize(
+    ('encoding', 'kind', 'big'),
+    [('32FC1', '<f4', 0), ('32FC1', '>f4', 1), ('16UC1', '<u2', 0), ('mono16', '>u2', 1)],
+)
 def test_distances_are_shown_from_black_to_white(encoding, kind, big):
     values = np.array([[0.0, 2.0], [4.0, 1.0]]).astype(kind)
     picture = shown_reading(image(encoding, values, is_bigendian=big)).picture
@@ -97,25 +111,33 @@ def test_a_compressed_picture_is_decoded():
     assert np.array_equal(shown_reading(message).picture, values)
 
 
-@pytest.mark.parametrize(('message', 'sentence'), [
-    (image('yuv422', np.zeros((2, 2), np.uint8)), "encoding 'yuv422' is not shown; those that"),
-    (image('rgb8', np.zeros((2, 2), np.uint8)), '4 bytes are no picture of 2 x 2 pixels of 3'),
-    (image('mono8', np.zeros((2, 2), np.uint8), height=9), '4 bytes are no picture of 2 x 9'),
-    (image('mono8', np.zeros((2, 2), np.uint8), width=0), '4 bytes are no picture of 0 x 2'),
-    (CompressedImage(format='h264', data=b'x'), "format 'h264' cannot be decoded"),
-    (PointCloud2(), 'no fields x, y and z'),
-    (cloud([[[1, 2, 3]]], width=5), '12 bytes are no 5 x 1 points of 12 bytes'),
-    (cloud([[[1, 2, 3]]], height=5), '12 bytes are no 1 x 5 points of 12 bytes'),
-    (cloud([[[1, 2, 3]]], point_step=4), 'its fields are no points of 4 bytes'),
-])
+@pytest.mark.parametrize(
+    ('message', 'sentence'),
+    [
+        (image('yuv422', np.zeros((2, 2), np.uint8)), "encoding 'yuv422' is not shown; those that"),
+        (image('rgb8', np.zeros((2, 2), np.uint8)), '4 bytes are no picture of 2 x 2 pixels of 3'),
+        (image('mono8', np.zeros((2, 2), np.uint8), height=9), '4 bytes are no picture of 2 x 9'),
+        (image('mono8', np.zeros((2, 2), np.uint8), width=0), '4 bytes are no picture of 0 x 2'),
+        (CompressedImage(format='h264', data=b'x'), "format 'h264' cannot be decoded"),
+        (PointCloud2(), 'no fields x, y and z'),
+        (cloud([[[1, 2, 3]]], width=5), '12 bytes are no 5 x 1 points of 12 bytes'),
+        (cloud([[[1, 2, 3]]], height=5), '12 bytes are no 1 x 5 points of 12 bytes'),
+        (cloud([[[1, 2, 3]]], point_step=4), 'its fields are no points of 4 bytes'),
+    ],
+)
 def test_what_cannot_be_shown_is_told(message, sentence):
     with pytest.raises(SimError, match=sentence):
         shown_reading(message)
 
 
 def test_rays_end_where_they_meet_something():
-    scan = LaserScan(angle_min=0.0, angle_increment=math.pi / 2, range_min=0.1, range_max=5.0,
-                     ranges=[1.0, 2.0, math.inf, math.nan, 0.05])
+    scan = LaserScan(
+        angle_min=0.0,
+        angle_increment=math.pi / 2,
+        range_min=0.1,
+        range_max=5.0,
+        ranges=[1.0, 2.0, math.inf, math.nan, 0.05],
+    )
     scan.header.frame_id = 'laser'
     reading = shown_reading(scan)
     assert reading.frame == 'laser'
@@ -154,8 +176,9 @@ def test_clouds_are_their_finite_points():
 def test_clouds_have_their_colours(name):
     data = struct.pack('<fff4xI12x', 1.0, 2.0, 3.0, 0x102030)
     message = PointCloud2(height=1, width=1, point_step=32, row_step=32, data=data)
-    message.fields = [PointField(axis, 4 * i, PointField.FLOAT32, 1)
-                      for i, axis in enumerate('xyz')]
+    message.fields = [
+        PointField(axis, 4 * i, PointField.FLOAT32, 1) for i, axis in enumerate('xyz')
+    ]
     message.fields.append(PointField(name, 16, PointField.FLOAT32, 1))
     reading = shown_reading(message)
     assert reading.points.tolist() == [[1, 2, 3]]
@@ -175,16 +198,19 @@ def test_old_clouds_are_shown_too():
 
 
 def test_contacts_are_points_with_normals():
-    state = ContactState(collision1_name='a', collision2_name='b',
-                         contact_positions=[Vector3(1, 2, 3)], contact_normals=[Vector3(0, 0, 1)])
+    state = ContactState(
+        collision1_name='a',
+        collision2_name='b',
+        contact_positions=[Vector3(1, 2, 3)],
+        contact_normals=[Vector3(0, 0, 1)],
+    )
     state.total_wrench.force = Vector3(0, 3, 4)
     reading = shown_reading(ContactsState(states=[state, state]))
     np.testing.assert_allclose(reading.lines, [[[1, 2, 3], [1, 2, 3.1]]] * 2)
     assert reading.points.tolist() == [[1, 2, 3]] * 2
     assert reading.words == 'a and b: 5.00 N'
     empty = shown_reading(ContactsState())
-    assert (empty.points.shape, empty.lines.shape, empty.words) == (
-        (0, 3), (0, 2, 3), 'no contact')
+    assert (empty.points.shape, empty.lines.shape, empty.words) == ((0, 3), (0, 2, 3), 'no contact')
 
 
 def test_many_contacts_are_told_briefly():
@@ -196,6 +222,9 @@ def test_other_sensors_are_tables_of_numbers():
     imu = Imu()
     imu.linear_acceleration = Vector3(0.0, 0.5, 9.81)
     rows = dict(shown_reading(imu).rows)
-    assert rows == {'linear_acceleration': '0 0.5 9.81', 'orientation': '0 0 0 0',
-                    'angular_velocity': '0 0 0'}
+    assert rows == {
+        'linear_acceleration': '0 0.5 9.81',
+        'orientation': '0 0 0 0',
+        'angular_velocity': '0 0 0',
+    }
     assert ('wrench force', '0 0 0') in shown_reading(WrenchStamped()).rows

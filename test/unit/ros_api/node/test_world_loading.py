@@ -41,12 +41,15 @@ def write(path, text):
 
 def exporting(folder, attributes):
     """Write a package that exports `attributes`, e.g. 'gazebo_media_path="${prefix}"'."""
-    write(folder / 'package.xml', f"""<package format="2">
+    write(
+        folder / 'package.xml',
+        f"""<package format="2">
       <name>{folder.name}</name><version>1.0.0</version><description>x</description>
       <maintainer email="a@b.example">a</maintainer><license>BSD</license>
       <exec_depend>gazebo_ros</exec_depend>
       <export><gazebo_ros {attributes}/></export>
-    </package>""")
+    </package>""",
+    )
 
 
 @pytest.mark.parametrize('name', ['worlds/empty.world', 'empty.world', 'empty'])
@@ -57,15 +60,17 @@ def test_our_own_worlds_are_found_by_name(name):
 
 
 def test_all_our_own_worlds_can_be_read():
-    assert own_worlds() == [f'worlds/{name}.world' for name in (
-        'empty', 'line', 'maze', 'room', 'rooms', 'shapes')]
+    assert own_worlds() == [
+        f'worlds/{name}.world' for name in ('empty', 'line', 'maze', 'room', 'rooms', 'shapes')
+    ]
     for name in own_worlds():
         assert read_world(name).faults == ()
 
 
 def test_our_own_worlds_are_found_without_a_ros_package(tmp_path, monkeypatch, places):
-    write(tmp_path / 'theirs' / 'package.xml',
-          '<package><name>rosbots_description</name></package>')
+    write(
+        tmp_path / 'theirs' / 'package.xml', '<package><name>rosbots_description</name></package>'
+    )
     for path in ('', str(tmp_path / 'theirs')):
         monkeypatch.setenv('ROS_PACKAGE_PATH', path)
         packages._packages.cache_clear()
@@ -87,10 +92,16 @@ def test_the_resource_path_comes_before_our_own_worlds(tmp_path, monkeypatch):
 def test_exported_worlds_and_models_of_packages_are_found(tmp_path, places):
     folder = tmp_path / 'packages' / 'houses'
     exporting(folder, 'gazebo_media_path="${prefix}" gazebo_model_path="${prefix}/models"')
-    write(folder / 'worlds' / 'house.world', '<sdf version="1.6"><world name="house"><include>'
-          '<uri>model://door</uri></include></world></sdf>')
-    write(folder / 'models' / 'door' / 'model.sdf', '<sdf version="1.6"><model name="door">'
-          '<static>true</static><link name="leaf"/></model></sdf>')
+    write(
+        folder / 'worlds' / 'house.world',
+        '<sdf version="1.6"><world name="house"><include>'
+        '<uri>model://door</uri></include></world></sdf>',
+    )
+    write(
+        folder / 'models' / 'door' / 'model.sdf',
+        '<sdf version="1.6"><model name="door">'
+        '<static>true</static><link name="leaf"/></model></sdf>',
+    )
     places(folder)
     world = read_world('worlds/house.world')
     assert [model.name for model, _ in world.models] == ['door']
@@ -99,23 +110,33 @@ def test_exported_worlds_and_models_of_packages_are_found(tmp_path, places):
 def test_files_of_packages_are_found_along_the_exported_media_path(tmp_path, places):
     folder = tmp_path / 'packages' / 'shops'
     exporting(folder, 'gazebo_media_path="${prefix}"')
-    write(folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj',
-          'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3')
-    write(folder / 'worlds' / 'shop.world', """<sdf version="1.6"><world name="shop">
+    write(
+        folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3'
+    )
+    write(
+        folder / 'worlds' / 'shop.world',
+        """<sdf version="1.6"><world name="shop">
       <model name="shelf"><link name="l"><visual name="v"><geometry><mesh>
       <uri>file://models/shelf/meshes/shelf.obj</uri></mesh></geometry></visual></link></model>
-      </world></sdf>""")
+      </world></sdf>""",
+    )
     places(folder)
-    (shelf, _), = read_world('worlds/shop.world').models
+    ((shelf, _),) = read_world('worlds/shop.world').models
     assert shelf.links[0].visuals[0].geometry.path == str(
-        folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj')
+        folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj'
+    )
     assert shelf.left_out == ()
 
 
-@pytest.mark.parametrize('flaw', [
-    ('a@b.example', 'you@todo'), ('<version>1.0.0</version>', ''), ('<name>houses', '<name>A B'),
-    ('<license>BSD</license>', ''),
-])
+@pytest.mark.parametrize(
+    'flaw',
+    [
+        ('a@b.example', 'you@todo'),
+        ('<version>1.0.0</version>', ''),
+        ('<name>houses', '<name>A B'),
+        ('<license>BSD</license>', ''),
+    ],
+)
 def test_exports_of_a_manifest_that_catkin_rejects_are_found(tmp_path, places, flaw):
     folder = tmp_path / 'packages' / 'houses'
     exporting(folder, 'gazebo_media_path="${prefix}"')
@@ -135,8 +156,11 @@ def test_unreadable_manifest_is_one_error_message(tmp_path, places, text):
 
 def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):
     monkeypatch.setenv('HOME', str(tmp_path))
-    write(tmp_path / '.gazebo' / 'models' / 'door' / 'model.sdf', '<sdf version="1.6">'
-          '<model name="door"><static>true</static><link name="leaf"/></model></sdf>')
+    write(
+        tmp_path / '.gazebo' / 'models' / 'door' / 'model.sdf',
+        '<sdf version="1.6">'
+        '<model name="door"><static>true</static><link name="leaf"/></model></sdf>',
+    )
     assert packages.find_model('door') == str(tmp_path / '.gazebo' / 'models' / 'door')
 
 
@@ -150,12 +174,15 @@ def test_error_about_an_unknown_world_lists_the_known_ones():
     assert '\n' not in sentence
 
 
-@pytest.mark.parametrize(('text', 'message'), [
-    ('<sdf version="1.6"><world name="w"><model', 'line 1'),
-    ('<sdf version="1.6"/>', '<world>'),
-    ('<robot name="r"/>', '<robot>'),
-    ('', 'empty'),
-])
+@pytest.mark.parametrize(
+    ('text', 'message'),
+    [
+        ('<sdf version="1.6"><world name="w"><model', 'line 1'),
+        ('<sdf version="1.6"/>', '<world>'),
+        ('<robot name="r"/>', '<robot>'),
+        ('', 'empty'),
+    ],
+)
 def test_error_about_an_invalid_world_names_its_file(tmp_path, text, message):
     path = write(tmp_path / 'broken.world', text)
     with pytest.raises(ModelError) as caught:
@@ -166,8 +193,11 @@ def test_error_about_an_invalid_world_names_its_file(tmp_path, text, message):
 
 
 def test_messages_while_reading_are_kept_for_the_node(tmp_path, caplog):
-    path = write(tmp_path / 'w.world', '<sdf version="1.6"><world name="w"><include>'
-                 '<uri>model://nowhere</uri></include></world></sdf>')
+    path = write(
+        tmp_path / 'w.world',
+        '<sdf version="1.6"><world name="w"><include>'
+        '<uri>model://nowhere</uri></include></world></sdf>',
+    )
     with held_records() as records:
         read_world(str(path))
     assert caplog.records == []

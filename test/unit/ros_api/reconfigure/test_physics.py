@@ -18,7 +18,8 @@ class FakeServer:
     def __init__(self):
         self.busy = False
         self.world = SimpleNamespace(
-            physics=PhysicsSettings(), paused=False, set_physics=self._set_physics)
+            physics=PhysicsSettings(), paused=False, set_physics=self._set_physics
+        )
         self.loop = SimpleNamespace(call=self._call)
         self.changes = 0
 

@@ -44,8 +44,9 @@ def test_waiting_ends_with_a_command_of_another_thread():
 
     taking = threading.Thread(target=take, daemon=True)
     taking.start()
-    putting = [threading.Thread(target=lambda: [queue.put(n) for n in range(250)])
-               for _ in range(4)]
+    putting = [
+        threading.Thread(target=lambda: [queue.put(n) for n in range(250)]) for _ in range(4)
+    ]
     for thread in putting:
         thread.start()
     taking.join(LONG)

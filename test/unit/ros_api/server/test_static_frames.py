@@ -46,15 +46,19 @@ def test_external_static_tree_is_moved_by_its_root(frames):
         assert (edge.parent, edge.child) == ('odom', 'base_footprint')
         again = compose(edge.pose, chain)
         assert again.position == pytest.approx(MOVED.position, abs=1e-12)
-        assert math.fabs(sum(a * b for a, b in zip(
-            again.orientation, MOVED.orientation, strict=True))) == pytest.approx(1.0)
+        assert math.fabs(
+            sum(a * b for a, b in zip(again.orientation, MOVED.orientation, strict=True))
+        ) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize('edges', [
-    [('odom', 'base_link', HELD)],
-    [('odom', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
-    [('base_link', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
-])
+@pytest.mark.parametrize(
+    'edges',
+    [
+        [('odom', 'base_link', HELD)],
+        [('odom', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
+        [('base_link', 'base_footprint', HELD), ('base_footprint', 'base_link', HELD)],
+    ],
+)
 def test_edge_stays_if_external_transforms_contain_it_or_form_a_loop(frames, edges):
     frames.add('/other', message(*edges))
     edge = FrameTransform('odom', 'base_link', MOVED)
@@ -74,14 +78,15 @@ def test_transform_that_is_not_finite_is_left_out(frames):
     assert not frames.parents
 
 
-@pytest.mark.parametrize(('readers', 'holder', 'wanted'), [
-    (set(), '/rsp', True),
-    ({'/rsp'}, '/rsp', False),
-    ({'/plotter'}, '/camera', True),  # one reads joint states, another holds a camera
-])
-def test_wheel_transforms_are_left_to_a_state_publisher(
-    monkeypatch, readers, holder, wanted
-):
+@pytest.mark.parametrize(
+    ('readers', 'holder', 'wanted'),
+    [
+        (set(), '/rsp', True),
+        ({'/rsp'}, '/rsp', False),
+        ({'/plotter'}, '/camera', True),  # one reads joint states, another holds a camera
+    ],
+)
+def test_wheel_transforms_are_left_to_a_state_publisher(monkeypatch, readers, holder, wanted):
     wire = Wire(monkeypatch)
     plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
     frames = wire.join(plugin).server.static_frames
@@ -112,8 +117,7 @@ def test_new_state_publisher_counts_before_its_notification(monkeypatch):
 
 
 @pytest.mark.parametrize('watching', [True, False])
-def test_connected_node_counts_before_its_first_message(
-        frames, watching, monkeypatch):
+def test_connected_node_counts_before_its_first_message(frames, watching, monkeypatch):
     monkeypatch.setattr('rospy.Subscriber', lambda *_: SimpleNamespace(impl=None))
     if watching:
         frames.watch(SimpleNamespace(every=lambda *_: None, post=None))

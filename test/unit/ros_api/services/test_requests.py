@@ -61,8 +61,7 @@ def test_wrench_without_a_frame_is_in_world_axes_with_the_point_as_lever_arm():
 
 def test_wrench_in_a_frame_is_rotated_and_acts_at_its_origin():
     frame, body = Pose((1.0, 0.0, 0.0), QUARTER), Pose((0.0, 0.0, 0.0))
-    force, torque = world_wrench(
-        (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), frame, body)
+    force, torque = world_wrench((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0), frame, body)
     assert force == pytest.approx((0.0, 1.0, 0.0))
     # The rotated torque, -2 by the point's lever arm, +1 by the frame's.
     assert torque == pytest.approx((0.0, 1.0, -1.0))
@@ -110,12 +109,17 @@ def test_given_motor_and_limits_are_applied():
     assert (joint.motor, joint.spec.upper) == ((3.0, 2.0), 1.5)
 
 
-@pytest.mark.parametrize(('fields', 'words'), [
-    ({'fmax': [-1.0], 'damping': [0.5]},
-     "fmax of joint 'hinge' is -1; it must not be negative [N m or N]"),
-    ({'vel': [3.0], 'damping': [-1.0]}, 'damping'),
-    ({'fmax': [3.0], 'loStop': [2.0]}, 'loStop 2'),
-])
+@pytest.mark.parametrize(
+    ('fields', 'words'),
+    [
+        (
+            {'fmax': [-1.0], 'damping': [0.5]},
+            "fmax of joint 'hinge' is -1; it must not be negative [N m or N]",
+        ),
+        ({'vel': [3.0], 'damping': [-1.0]}, 'damping'),
+        ({'fmax': [3.0], 'loStop': [2.0]}, 'loStop 2'),
+    ],
+)
 def test_rejected_change_of_a_joint_changes_nothing(fields, words):
     joint, sentence = _set_joint(**fields)
     assert words in sentence
@@ -154,8 +158,15 @@ def test_invalid_settings_are_rejected(changes, words):
 def test_unusual_settings_are_accepted():
     check_physics(PhysicsSettings())
     check_physics(PhysicsSettings(gravity=(1e6, -1e6, 1e6)))
-    check_physics(PhysicsSettings(step_size=10.0, max_update_rate=0.0, gravity=(0.0, 0.0, 0.0),
-                                  sor_pgs_iters=0, max_contacts=0))
+    check_physics(
+        PhysicsSettings(
+            step_size=10.0,
+            max_update_rate=0.0,
+            gravity=(0.0, 0.0, 0.0),
+            sor_pgs_iters=0,
+            max_contacts=0,
+        )
+    )
 
 
 def test_every_reconfigure_parameter_has_a_value_and_its_type():
@@ -165,5 +176,6 @@ def test_every_reconfigure_parameter_has_a_value_and_its_type():
 
     live = settings(get_physics_properties(Server, None))
     assert {name: type(value) for name, value in live.items()} == {
-        p.name: type(p.default) for p in PARAMETERS}
+        p.name: type(p.default) for p in PARAMETERS
+    }
     assert (live['sor_pgs_iters'], live['gravity_z']) == (50, -9.8)

@@ -26,8 +26,9 @@ from rosbots_description.sim.plugin_registry.registry import (
     sensor_plugin_class,
 )
 
-SERVER = SimpleNamespace(loop=SimpleNamespace(
-    **dict.fromkeys(('call', 'run_in_thread'), lambda command: command())))
+SERVER = SimpleNamespace(
+    loop=SimpleNamespace(**dict.fromkeys(('call', 'run_in_thread'), lambda command: command()))
+)
 DONE = DeleteModelResponse(True, 'done')
 
 
@@ -40,8 +41,13 @@ def _refuse(_server, _request):
 
 
 def test_service_answers_from_the_prepared_value():
-    entry = Service('s', DeleteModel, lambda _server, value: DeleteModelResponse(True, value),
-                    lambda _server, request: request.upper(), registers=False)
+    entry = Service(
+        's',
+        DeleteModel,
+        lambda _server, value: DeleteModelResponse(True, value),
+        lambda _server, request: request.upper(),
+        registers=False,
+    )
     assert respond(SERVER, entry, 'text').status_message == 'TEXT'
 
 
@@ -64,8 +70,14 @@ def test_exception_in_a_service_without_success_field_fails_the_call():
 
 def test_service_off_the_loop_runs_on_the_callers_thread():
     busy = SimpleNamespace(loop=SimpleNamespace(call=_fail))
-    entry = Service('s', DeleteModel, lambda _server, value: DeleteModelResponse(True, value),
-                    None, registers=False, on_loop=False)
+    entry = Service(
+        's',
+        DeleteModel,
+        lambda _server, value: DeleteModelResponse(True, value),
+        None,
+        registers=False,
+        on_loop=False,
+    )
     assert respond(busy, entry, 'text').status_message == 'text'
 
 
@@ -104,12 +116,17 @@ def test_relative_velocity_is_rotated_and_ignores_the_frames_rotation_rate():
     assert twist.angular == pytest.approx((0.0, 0.0, 1.5))
 
 
-@pytest.mark.parametrize(('depths', 'named'), [
-    ({}, None),
-    ({'ground_plane': DEEP}, None),  # heights are rounded
-    ({'ground_plane': 0.2, 'box': 0.034, 'wall': 0.001},
-     "inside 'ground_plane' (0.2 m deep) and 'box' (0.034 m deep), which"),
-])
+@pytest.mark.parametrize(
+    ('depths', 'named'),
+    [
+        ({}, None),
+        ({'ground_plane': DEEP}, None),  # heights are rounded
+        (
+            {'ground_plane': 0.2, 'box': 0.034, 'wall': 0.001},
+            "inside 'ground_plane' (0.2 m deep) and 'box' (0.034 m deep), which",
+        ),
+    ],
+)
 def test_spawn_with_overlap_is_one_line(caplog, depths, named):
     warn_overlap(SimpleNamespace(overlaps=lambda _: depths), SimpleNamespace(name='robot'))
     assert len(caplog.records) == (named is not None)

@@ -12,8 +12,13 @@ class FakeSensor(SimpleNamespace):
     __hash__ = object.__hash__
 
     def __init__(self, kind='ray', due=1, count=0, last_ns=0):
-        super().__init__(spec=SimpleNamespace(type=kind), scoped_name=f'bot::link::{kind}', due=due,
-                         count=count, last_ns=last_ns)
+        super().__init__(
+            spec=SimpleNamespace(type=kind),
+            scoped_name=f'bot::link::{kind}',
+            due=due,
+            count=count,
+            last_ns=last_ns,
+        )
 
     def give(self, count, milliseconds):
         self.count, self.last_ns = self.count + count, milliseconds * 1_000_000

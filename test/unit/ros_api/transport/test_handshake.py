@@ -84,8 +84,10 @@ def test_header_in_pieces_is_recognised_when_complete(ends):
     header = struct.pack('<I', 7) + b'abc=def'
     begin = time.monotonic()
     theirs.sendall(header[:2])
-    timers = [threading.Timer(TIMEOUT * i, theirs.sendall, [header[2 * i : 2 * i + 2]])
-              for i in range(1, 5)]
+    timers = [
+        threading.Timer(TIMEOUT * i, theirs.sendall, [header[2 * i : 2 * i + 2]])
+        for i in range(1, 5)
+    ]
     timers.append(threading.Timer(TIMEOUT * 5, theirs.sendall, [header[10:]]))
     for timer in timers:
         timer.start()
@@ -95,7 +97,8 @@ def test_header_in_pieces_is_recognised_when_complete(ends):
 
 
 @pytest.mark.parametrize(
-    ('length', 'taken'), [(MAX_HEADER_SIZE, True), (MAX_HEADER_SIZE + 1, False)])
+    ('length', 'taken'), [(MAX_HEADER_SIZE, True), (MAX_HEADER_SIZE + 1, False)]
+)
 def test_length_of_a_header_is_limited(ends, length, taken):
     ours, theirs = ends
     theirs.sendall(struct.pack('<I', length) + b'x' * length)

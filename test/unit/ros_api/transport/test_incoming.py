@@ -34,8 +34,11 @@ def ends():
 @pytest.fixture
 def service(monkeypatch):
     monkeypatch.setattr(ServiceImpl, 'error_handler', complain)
-    return ServiceImpl('~get_model_state', GetModelState,
-                       lambda request: GetModelStateResponse(status_message=request.model_name))
+    return ServiceImpl(
+        '~get_model_state',
+        GetModelState,
+        lambda request: GetModelStateResponse(status_message=request.model_name),
+    )
 
 
 def serve_once(service, connection):
@@ -114,8 +117,9 @@ def test_shutdown_waits_for_requests_in_progress(ends, monkeypatch):
     monkeypatch.setattr(ServiceImpl, '_handle_request', answer)
     ours, theirs = ends
     theirs.sendall(request('box'))
-    thread = threading.Thread(target=serve_once, args=(
-        ServiceImpl('~get_model_state', GetModelState, handler), ours))
+    thread = threading.Thread(
+        target=serve_once, args=(ServiceImpl('~get_model_state', GetModelState, handler), ours)
+    )
     assert wait_for_answers(0.0)
     thread.start()
     assert begun.wait(60.0)

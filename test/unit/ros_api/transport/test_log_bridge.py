@@ -52,7 +52,7 @@ def test_a_message_to_rosout_asks_the_master_nothing(monkeypatch, answer, value)
     monkeypatch.setattr(paramserver, '_param_server_cache', None)
     log_bridge._remember_parameter()
     asked = master.target.subscribeParam
-    (_, _, name), = (call.args for call in asked.call_args_list)
+    ((_, _, name),) = (call.args for call in asked.call_args_list)
     assert rospy.get_param_cached(name, False) is value
     asked.assert_called_once()
     # It is what rospy looks up, and that way.

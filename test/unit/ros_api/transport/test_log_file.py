@@ -25,18 +25,22 @@ def log_to():
         added.append(handler)
         tolerate_full_disk()
         return lambda text, *args: handler.handle(
-            logging.makeLogRecord({'msg': text, 'args': args}))
+            logging.makeLogRecord({'msg': text, 'args': args})
+        )
 
     yield add
     for handler in added:
         logging.getLogger().removeHandler(handler)
 
 
-@pytest.mark.parametrize(('arguments', 'path'), [
-    ([], '/logs/gazebo.log'),
-    (['gui:=false', '__name:=other'], '/logs/other.log'),
-    (['__log:=/a/b.log', '__name:=other'], '/a/b.log'),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'path'),
+    [
+        ([], '/logs/gazebo.log'),
+        (['gui:=false', '__name:=other'], '/logs/other.log'),
+        (['__log:=/a/b.log', '__name:=other'], '/a/b.log'),
+    ],
+)
 def test_path_is_that_of_rospy(monkeypatch, arguments, path):
     monkeypatch.setenv('ROS_LOG_DIR', '/logs')
     assert log_file('/gazebo', arguments) == Path(path)
@@ -48,10 +52,14 @@ def test_folder_of_a_writable_file_is_made_and_the_file_is_not(tmp_path):
     assert list((tmp_path / 'new').iterdir()) == []
 
 
-@pytest.mark.parametrize(('path', 'reason'), [
-    ('file/a.log', 'Not a directory'), ('file/log/a.log', 'Not a directory'),
-    ('folder', 'Is a directory'),
-])
+@pytest.mark.parametrize(
+    ('path', 'reason'),
+    [
+        ('file/a.log', 'Not a directory'),
+        ('file/log/a.log', 'Not a directory'),
+        ('folder', 'Is a directory'),
+    ],
+)
 def test_error_names_the_obstacle(tmp_path, path, reason):
     (tmp_path / 'file').write_text('')
     (tmp_path / 'folder').mkdir()

@@ -68,8 +68,10 @@ def _no_pause(monkeypatch):
 def test_parameters_are_set_in_one_call(there):
     write_parameters({'gravity_z': -9.8, 'sor_pgs_iters': 50, 'auto_disable_bodies': False})
     assert there.parameters == {
-        '/unnamed/gravity_z': -9.8, '/unnamed/sor_pgs_iters': 50,
-        '/unnamed/auto_disable_bodies': False}
+        '/unnamed/gravity_z': -9.8,
+        '/unnamed/sor_pgs_iters': 50,
+        '/unnamed/auto_disable_bodies': False,
+    }
     assert there.arrived == 1
 
 
@@ -87,8 +89,11 @@ def test_simulated_time_can_wait_where_no_master_answers(monkeypatch, address):
 
 
 def test_the_topics_of_a_node_are_those_that_it_publishes_or_reads(there):
-    there.state = ([['/clock', ['/gazebo']], ['/odom', ['/other']]],
-                   [['/cmd_vel', ['/gazebo', '/other']]], [])
+    there.state = (
+        [['/clock', ['/gazebo']], ['/odom', ['/other']]],
+        [['/cmd_vel', ['/gazebo', '/other']]],
+        [],
+    )
     assert topics_of('/gazebo') == ['/clock', '/cmd_vel']
 
 
@@ -157,6 +162,7 @@ def test_master_that_is_absent_or_ending_is_not_running(monkeypatch, there):
     assert is_master_running('/me')
     with socket.create_server(('localhost', 0)) as listening:
         monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{listening.getsockname()[1]}')
+
         def hang_up():
             listening.accept()[0].close()
 

@@ -43,7 +43,8 @@ def registered(monkeypatch):
     master = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
     master.register_function(
         lambda _caller, name: (1, '', nodes[name]) if name in nodes else (-1, 'unknown node', ''),
-        'lookupNode')
+        'lookupNode',
+    )
     with serving(master) as uri:
         monkeypatch.setenv('ROS_MASTER_URI', uri)
         yield nodes
@@ -82,8 +83,9 @@ def test_stale_registration_of_a_killed_node_is_no_conflict(registered):
 
 def test_port_reused_by_another_program_is_no_conflict(registered):
     server = http.server.HTTPServer(
-        ('localhost', 0), type('Silent', (http.server.BaseHTTPRequestHandler,),
-                               {'log_message': lambda *_: None}))
+        ('localhost', 0),
+        type('Silent', (http.server.BaseHTTPRequestHandler,), {'log_message': lambda *_: None}),
+    )
     with serving(server) as uri:
         registered[NAME] = uri
         require_free(NAME)
@@ -102,19 +104,23 @@ def test_node_that_took_over_the_name_is_reported(living):
     assert replacing_node(NAME, living) is None
 
 
-@pytest.mark.parametrize(('arguments', 'namespace', 'name'), [
-    ([], '', '/gazebo'),
-    (['__name:=two', 'odom:=odometry'], '', '/two'),
-    ([], '/lab', '/lab/gazebo'),
-    (['__ns:=/other', '__name:=/two'], '/lab', '/other/two'),
-])
+@pytest.mark.parametrize(
+    ('arguments', 'namespace', 'name'),
+    [
+        ([], '', '/gazebo'),
+        (['__name:=two', 'odom:=odometry'], '', '/two'),
+        ([], '/lab', '/lab/gazebo'),
+        (['__ns:=/other', '__name:=/two'], '/lab', '/other/two'),
+    ],
+)
 def test_name_is_that_of_rospy(monkeypatch, arguments, namespace, name):
     monkeypatch.setenv('ROS_NAMESPACE', namespace)
     assert node_name('gazebo', arguments) == name
 
 
 def test_without_a_master_there_is_a_warning_at_once_and_then_every_ten_seconds(
-        monkeypatch, capsys):
+    monkeypatch, capsys
+):
     now, warned = [0.0], []
 
     def sleep(seconds):

@@ -14,7 +14,8 @@ def test_node_start_does_not_sleep_once_registered(monkeypatch):
     monkeypatch.setattr(init, 'init_tcpros', lambda _port: None)
     monkeypatch.setattr(init, '_set_caller_id', lambda _name: None)
     monkeypatch.setattr(
-        init, 'ROSHandler', lambda *_: SimpleNamespace(_is_registered=lambda: next(answers)))
+        init, 'ROSHandler', lambda *_: SimpleNamespace(_is_registered=lambda: next(answers))
+    )
     monkeypatch.setattr(init.rosgraph.xmlrpc, 'XmlRpcNode', lambda *_, **__: node)
     monkeypatch.setattr(init, 'time', init.time)  # restored after the test
     process._begin_at_once()

@@ -47,9 +47,10 @@ def server():
 
 HELD = {  # what makes an object, and the attributes that we read or set
     connection: 'done socket stat_bytes stat_num_msg endpoint_id callerid_pub header close '
-                'write_data',
-    lambda: rospy.topics._PublisherImpl('/t', rospy.AnyMsg):
-        'connections subscriber_listeners seq message_data_sent',
+    'write_data',
+    lambda: rospy.topics._PublisherImpl(
+        '/t', rospy.AnyMsg
+    ): 'connections subscriber_listeners seq message_data_sent',
     lambda: rospy.topics._SubscriberImpl('/t', rospy.AnyMsg): 'connections connection_poll',
     rospy.topics.Poller: 'add_fd remove_fd error_iter',
     server: 'server_sock is_shutdown inbound_handler',
@@ -72,22 +73,28 @@ def test_attributes_that_we_use_exist(make, names):
     assert [name for name in names.split() if not hasattr(thing, name)] == []
 
 
-@pytest.mark.parametrize(('function', 'name'), [
-    (rospy.topics._PublisherImpl.add_connection, 'QueuedConnection'),
-    (rospy.topics._TopicImpl.__init__, 'Poller'),
-    (tcpros_base.TCPROSTransport.receive_once, 'recv_buff'),
-    (rospy.impl.init.start_node, 'time'),
-])
+@pytest.mark.parametrize(
+    ('function', 'name'),
+    [
+        (rospy.topics._PublisherImpl.add_connection, 'QueuedConnection'),
+        (rospy.topics._TopicImpl.__init__, 'Poller'),
+        (tcpros_base.TCPROSTransport.receive_once, 'recv_buff'),
+        (rospy.impl.init.start_node, 'time'),
+    ],
+)
 def test_rospy_looks_up_replaced_functions_at_each_call(function, name):
     assert name in function.__globals__
     assert name in function.__code__.co_names
 
 
-@pytest.mark.parametrize(('function', 'name'), [
-    (rospy.impl.init.start_node, 'sleep'),
-    (tcpros_base.TCPROSTransport.receive_once, '_connection_header'),
-    (registration.RegManager.__init__, 'cond'),
-])
+@pytest.mark.parametrize(
+    ('function', 'name'),
+    [
+        (rospy.impl.init.start_node, 'sleep'),
+        (tcpros_base.TCPROSTransport.receive_once, '_connection_header'),
+        (registration.RegManager.__init__, 'cond'),
+    ],
+)
 def test_names_that_we_use_exist_in_rospy(function, name):
     assert name in function.__code__.co_names
 

@@ -7,8 +7,10 @@ from rosbots_description.ros_api.views.frames import ShownFrames
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.runtime.world import World
 
-BOX = urdf_spec('<link name="box"><inertial><mass value="1"/>'
-                '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>')
+BOX = urdf_spec(
+    '<link name="box"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+)
 
 
 def test_frame_of_a_model_is_sent_once_and_after_motion():
@@ -17,7 +19,9 @@ def test_frame_of_a_model_is_sent_once_and_after_motion():
     robot = world.spawn(BOX, 'robot', Pose())
     shown = ShownFrames(world)
     assert [(frame.header.frame_id, frame.child_frame_id) for frame in shown.changes()] == [
-        ('world', 'crate'), ('world', 'robot')]
+        ('world', 'crate'),
+        ('world', 'robot'),
+    ]
     assert shown.changes() == []
     robot.set_pose(Pose((1.0, 2.0, 3.0)))
     (moved,) = shown.changes()

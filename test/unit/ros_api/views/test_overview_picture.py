@@ -32,10 +32,20 @@ def test_three_numbers_are_a_point():
     assert line_of_sight([1, 2, 3], (0.0, 0.5, 0.0)) == ((1.0, 2.0, 3.0), (0.0, 0.5, 0.0))
 
 
-@pytest.mark.parametrize('value', [
-    '123', 5, None, [1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [1.0, 2.0, '3'], [1.0, 2.0, math.nan],
-    [math.inf, 0.0, 0.0], {1: 2, 3: 4, 5: 6},
-])
+@pytest.mark.parametrize(
+    'value',
+    [
+        '123',
+        5,
+        None,
+        [1.0, 2.0],
+        [1.0, 2.0, 3.0, 4.0],
+        [1.0, 2.0, '3'],
+        [1.0, 2.0, math.nan],
+        [math.inf, 0.0, 0.0],
+        {1: 2, 3: 4, 5: 6},
+    ],
+)
 def test_other_values_are_rejected(value):
     with pytest.raises(RequestError, match=r'eye is .* a list of three finite numbers'):
         line_of_sight(value, [0.0, 0.0, 0.0])

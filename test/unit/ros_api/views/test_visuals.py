@@ -41,13 +41,16 @@ def world(empty):
     return empty
 
 
-@pytest.mark.parametrize(('geometry', 'kind', 'scale'), [
-    (Box((1.0, 2.0, 3.0)), Marker.CUBE, (1.0, 2.0, 3.0)),
-    (Sphere(0.5), Marker.SPHERE, (1.0, 1.0, 1.0)),
-    (Cylinder(0.5, 2.0), Marker.CYLINDER, (1.0, 1.0, 2.0)),
-    (Plane(size=(10.0, 20.0)), Marker.TRIANGLE_LIST, (10.0, 20.0, 1.0)),
-    (Mesh('/a b/c.dae', (2.0, 2.0, 2.0)), Marker.MESH_RESOURCE, (2.0, 2.0, 2.0)),
-])
+@pytest.mark.parametrize(
+    ('geometry', 'kind', 'scale'),
+    [
+        (Box((1.0, 2.0, 3.0)), Marker.CUBE, (1.0, 2.0, 3.0)),
+        (Sphere(0.5), Marker.SPHERE, (1.0, 1.0, 1.0)),
+        (Cylinder(0.5, 2.0), Marker.CYLINDER, (1.0, 1.0, 2.0)),
+        (Plane(size=(10.0, 20.0)), Marker.TRIANGLE_LIST, (10.0, 20.0, 1.0)),
+        (Mesh('/a b/c.dae', (2.0, 2.0, 2.0)), Marker.MESH_RESOURCE, (2.0, 2.0, 2.0)),
+    ],
+)
 def test_shape_has_a_marker_of_its_type_and_scale(geometry, kind, scale):
     marker = visual_marker('m::l', 3, Visual('v', geometry, material=RED))
     assert (marker.type, marker.ns, marker.id) == (kind, 'm::l', 3)

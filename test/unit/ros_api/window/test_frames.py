@@ -19,9 +19,21 @@ VISITS = 500
 class Mallinfo(ctypes.Structure):
     """glibc's mallinfo2."""
 
-    _fields_ = [(name, ctypes.c_size_t) for name in (
-        'arena', 'ordblks', 'smblks', 'hblks', 'hblkhd', 'usmblks', 'fsmblks', 'uordblks',
-        'fordblks', 'keepcost')]
+    _fields_ = [
+        (name, ctypes.c_size_t)
+        for name in (
+            'arena',
+            'ordblks',
+            'smblks',
+            'hblks',
+            'hblkhd',
+            'usmblks',
+            'fsmblks',
+            'uordblks',
+            'fordblks',
+            'keepcost',
+        )
+    ]
 
 
 def allocated():
@@ -156,6 +168,7 @@ def test_visits_leave_nothing_behind(finder, topics):
         topics.say('base', 'laser', 0.1)
         assert finder.locate('laser', {'base'})
         finder.forget()
+
     visit()
     before = allocated()
     for _ in range(VISITS):

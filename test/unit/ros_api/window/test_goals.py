@@ -17,9 +17,12 @@ class Graph:
     """What is subscribed to."""
 
     def subscribed(self):
-        return {'/a': 'geometry_msgs/PoseStamped', '/initialpose': (
-            'geometry_msgs/PoseWithCovarianceStamped'), '/cmd_vel': 'geometry_msgs/Twist',
-            '/move_base_simple/goal': 'geometry_msgs/PoseStamped'}
+        return {
+            '/a': 'geometry_msgs/PoseStamped',
+            '/initialpose': ('geometry_msgs/PoseWithCovarianceStamped'),
+            '/cmd_vel': 'geometry_msgs/Twist',
+            '/move_base_simple/goal': 'geometry_msgs/PoseStamped',
+        }
 
 
 @pytest.fixture

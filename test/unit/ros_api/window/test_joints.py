@@ -10,7 +10,10 @@ from rosbots_description.ros_api.window.joints import RosJoints
 from rosbots_description.sim.description import CommandTopic
 
 NUMBER, ARRAY, TRAJECTORY = (
-    'std_msgs/Float64', 'std_msgs/Float64MultiArray', 'trajectory_msgs/JointTrajectory')
+    'std_msgs/Float64',
+    'std_msgs/Float64MultiArray',
+    'trajectory_msgs/JointTrajectory',
+)
 PARAMETERS = {
     '/group': {'joints': ['a', 'b'], 'type': 'position_controllers/JointGroupPositionController'},
     '/force': {'joints': ['a'], 'type': 'effort_controllers/JointGroupEffortController'},
@@ -60,11 +63,19 @@ def joints(graph, monkeypatch):
 
 
 def test_controllers_are_offered_with_their_joints(graph, joints):
-    graph.topics = {'/one/command': NUMBER, '/group/command': ARRAY, '/force/command': ARRAY,
-                    '/arm/command': TRAJECTORY, '/cmd_vel': 'geometry_msgs/Twist'}
+    graph.topics = {
+        '/one/command': NUMBER,
+        '/group/command': ARRAY,
+        '/force/command': ARRAY,
+        '/arm/command': TRAJECTORY,
+        '/cmd_vel': 'geometry_msgs/Twist',
+    }
     assert joints.command_topics() == [
-        CommandTopic('/one/command'), CommandTopic('/group/command', ('a', 'b'), True),
-        CommandTopic('/force/command', ('a',)), CommandTopic('/arm/command', ('a', 'b'), True)]
+        CommandTopic('/one/command'),
+        CommandTopic('/group/command', ('a', 'b'), True),
+        CommandTopic('/force/command', ('a',)),
+        CommandTopic('/arm/command', ('a', 'b'), True),
+    ]
 
 
 @pytest.mark.parametrize('name', ['/odd/command', '/nowhere/command', '/arm/other'])
@@ -97,8 +108,11 @@ def test_a_topic_of_another_type_gets_another_publisher(graph, joints):
 
 def test_parameters_are_asked_for_once_while_a_topic_is_there(joints, graph, monkeypatch):
     asked = []
-    monkeypatch.setattr(module.rospy, 'get_param',
-                        lambda name, default: asked.append(name) or PARAMETERS.get(name, default))
+    monkeypatch.setattr(
+        module.rospy,
+        'get_param',
+        lambda name, default: asked.append(name) or PARAMETERS.get(name, default),
+    )
     graph.topics = {'/group/command': ARRAY, '/nothing': ARRAY}
     first = joints.command_topics()
     assert joints.command_topics() == first == [CommandTopic('/group/command', ('a', 'b'), True)]

@@ -19,8 +19,9 @@ def library():
 
 
 def test_urdf_is_sent_as_it_is_without_its_declaration(library):
-    text = library.file('../a.urdf', '<?xml version="1.0" encoding="latin1"?>\n<r n="é"/>'.encode(
-        'latin1'))
+    text = library.file(
+        '../a.urdf', '<?xml version="1.0" encoding="latin1"?>\n<r n="é"/>'.encode('latin1')
+    )
     assert (text.name, text.xml) == ('', '\n<r n="é"/>')
 
 
@@ -29,12 +30,15 @@ def test_xacro_is_expanded(library):
     assert '<link name="3"/>' in text.xml
 
 
-@pytest.mark.parametrize(('inner', 'reason'), [
-    ('<xacro:nope/>', 'unknown macro name: xacro:nope'),
-    ('<link', 'XML parsing error'),
-    ('<xacro:include filename="../x.xacro"/>', 'No such'),
-    ('<link name="${[0]*10**12}"/>', "when evaluating expression '[0]*10**12'"),
-])
+@pytest.mark.parametrize(
+    ('inner', 'reason'),
+    [
+        ('<xacro:nope/>', 'unknown macro name: xacro:nope'),
+        ('<link', 'XML parsing error'),
+        ('<xacro:include filename="../x.xacro"/>', 'No such'),
+        ('<link name="${[0]*10**12}"/>', "when evaluating expression '[0]*10**12'"),
+    ],
+)
 def test_xacro_that_is_rejected_says_why_in_a_sentence(library, inner, reason):
     with pytest.raises(SimError, match=r"^'a\.xacro': xacro rejects it: .+") as fault:
         library.file('a.xacro', f'{HEAD}{inner}</robot>'.encode())
@@ -43,10 +47,13 @@ def test_xacro_that_is_rejected_says_why_in_a_sentence(library, inner, reason):
     assert '/tmp' not in str(fault.value)
 
 
-@pytest.mark.parametrize(('content', 'reason'), [
-    (b'\0\1\xff', 'is not text'),
-    (b' ' * (MAX_XML_BYTES + 1), f'{MAX_XML_BYTES} are accepted'),
-])
+@pytest.mark.parametrize(
+    ('content', 'reason'),
+    [
+        (b'\0\1\xff', 'is not text'),
+        (b' ' * (MAX_XML_BYTES + 1), f'{MAX_XML_BYTES} are accepted'),
+    ],
+)
 def test_what_is_no_description_is_refused(library, content, reason):
     with pytest.raises(SimError, match=reason):
         library.file('a.urdf', content)
@@ -59,8 +66,10 @@ def test_shapes_and_lights_are_read_as_they_were_written(library):
     assert (read.static, read.links[0].collisions) == (False, spec.links[0].collisions)
     assert read.links[0].inertial == spec.links[0].inertial
     assert read.links[0].visuals[0].material.rgba == (1.0, 0.5, 0.0, 1.0)
-    for light in (point_light((1.0, 2.0, 0.0), (1.0, 0.5, 0.0)),
-                  LightSpec('s', 'spot', spot_inner_angle=0.2, spot_outer_angle=0.4)):
+    for light in (
+        point_light((1.0, 2.0, 0.0), (1.0, 0.5, 0.0)),
+        LightSpec('s', 'spot', spot_inner_angle=0.2, spot_outer_angle=0.4),
+    ):
         assert load_sdf_light(library.light(light).xml, light.name) == light
 
 

@@ -41,7 +41,7 @@ def test_commands_wait_for_the_robot_that_connects_first(made):
     drive = RosRobots(None).drive
     drive('/cmd_vel', 0.5, 1.0)
     drive('/cmd_vel', 0.0, 0.0)
-    publisher, = made
+    (publisher,) = made
     assert publisher.received == []
     publisher.connect()
     publisher.connect()  # another one

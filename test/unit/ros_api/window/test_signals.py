@@ -9,8 +9,13 @@ from rosbots_description.ros_api.window import signals as module
 from rosbots_description.ros_api.window.signals import RosSignals
 from rosbots_description.sim.core import SimError
 
-TYPES = {'/odom': 'nav_msgs/Odometry', '/odom/rate': 'std_msgs/Float64',
-         '/name': 'std_msgs/String', '/strange': 'nowhere_msgs/None', '/any': '*'}
+TYPES = {
+    '/odom': 'nav_msgs/Odometry',
+    '/odom/rate': 'std_msgs/Float64',
+    '/name': 'std_msgs/String',
+    '/strange': 'nowhere_msgs/None',
+    '/any': '*',
+}
 SPEED = '/odom/twist/twist/linear/x'
 
 
@@ -72,11 +77,16 @@ def test_the_longest_name_of_a_topic_is_meant(signals):
     assert signals.read() == {'/odom/rate/data': [(None, 77.0, 4.0)]}  # it has no stamp
 
 
-@pytest.mark.parametrize(('curve', 'sentence'), [
-    ('/gone/x', "No topic of '/gone/x' is published"), ('', "No topic of '' is published"),
-    ('/odom', "No topic of '/odom' is published"), ('/odom/foo', "has no field 'foo'"),
-    ('/strange/x', 'This machine has no messages nowhere_msgs/None, those of /strange'),
-])
+@pytest.mark.parametrize(
+    ('curve', 'sentence'),
+    [
+        ('/gone/x', "No topic of '/gone/x' is published"),
+        ('', "No topic of '' is published"),
+        ('/odom', "No topic of '/odom' is published"),
+        ('/odom/foo', "has no field 'foo'"),
+        ('/strange/x', 'This machine has no messages nowhere_msgs/None, those of /strange'),
+    ],
+)
 def test_what_cannot_be_plotted_is_told_and_not_read(signals, curve, sentence):
     with pytest.raises(SimError, match=sentence):
         signals.open(curve)

@@ -15,7 +15,6 @@ def motion(time, *numbers):
 
 
 class Shown(list):
-
     def __init__(self):
         super().__init__()
         self.order = InOrder(self.append, self.append)

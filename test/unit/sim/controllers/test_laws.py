@@ -48,16 +48,24 @@ def test_a_pid_ignores_what_is_not_finite(error):
     assert math.isfinite(pid.update(1.0, DT))
 
 
-@pytest.mark.parametrize(('given', 'bounds'), [
-    ({'i_clamp': -2}, (2.0, -2.0)), ({'i_clamp': 2, 'i_clamp_min': 1}, (2.0, -1.0)),
-    ({'i_clamp_max': 3, 'i_clamp_min': -1}, (3.0, -1.0)), ({}, (0.0, 0.0))])
+@pytest.mark.parametrize(
+    ('given', 'bounds'),
+    [
+        ({'i_clamp': -2}, (2.0, -2.0)),
+        ({'i_clamp': 2, 'i_clamp_min': 1}, (2.0, -1.0)),
+        ({'i_clamp_max': 3, 'i_clamp_min': -1}, (3.0, -1.0)),
+        ({}, (0.0, 0.0)),
+    ],
+)
 def test_the_clamp_of_an_integral_is_read_as_upstream(given, bounds):
     gains = Pid.from_parameters(ControllerParameters({'p': 1, **given})).gains
     assert (gains.i_max, gains.i_min) == bounds
 
 
-@pytest.mark.parametrize(('start', 'end', 'way'), [
-    (0.0, 3.0, 3.0), (3.0, -3.0, math.tau - 6.0), (-3.0, 3.0, 6.0 - math.tau)])
+@pytest.mark.parametrize(
+    ('start', 'end', 'way'),
+    [(0.0, 3.0, 3.0), (3.0, -3.0, math.tau - 6.0), (-3.0, 3.0, 6.0 - math.tau)],
+)
 def test_the_shortest_way_may_cross_pi(start, end, way):
     assert shortest(start, end) == pytest.approx(way)
 
@@ -110,9 +118,19 @@ def test_no_limit_is_no_bound():
 
 def test_parameters_add_and_remove_limits():
     described = ControlledJoint('revolute', -1.0, 1.0, 2.0, 3.0)
-    limits = read_limits(described, ControllerParameters({
-        'has_position_limits': False, 'has_velocity_limits': True, 'max_velocity': 7,
-        'has_effort_limits': True, 'has_acceleration_limits': True, 'max_acceleration': 5.0}))
+    limits = read_limits(
+        described,
+        ControllerParameters(
+            {
+                'has_position_limits': False,
+                'has_velocity_limits': True,
+                'max_velocity': 7,
+                'has_effort_limits': True,
+                'has_acceleration_limits': True,
+                'max_acceleration': 5.0,
+            }
+        ),
+    )
     assert (limits.lower, limits.upper) == (-math.inf, math.inf)
     assert (limits.velocity, limits.acceleration, limits.effort) == (7.0, 5.0, 3.0)
 
@@ -126,9 +144,13 @@ def test_a_gate_keeps_its_mean_rate():
 
 
 def test_values_of_a_wrong_type_are_absent():
-    params = ControllerParameters({
-        'a': {'b': 2, 'c': 'x', 'd': True, 'n': math.nan, 'l': ['p', 'q'], 'm': ['p', 1]},
-        'huge': 10 ** 400}, '/ns')
+    params = ControllerParameters(
+        {
+            'a': {'b': 2, 'c': 'x', 'd': True, 'n': math.nan, 'l': ['p', 'q'], 'm': ['p', 1]},
+            'huge': 10**400,
+        },
+        '/ns',
+    )
     assert params.number('a/b') == 2.0
     assert params.number('a/d') is params.number('a/n') is params.number('huge') is None
     assert params.read('a/c', 5.0) == 5.0

@@ -7,13 +7,16 @@ from rosbots_description.sim.core.xml_text import plain_text
 from rosbots_description.sim.resources.xml_parser import parse_xml, root_tag
 
 
-@pytest.mark.parametrize('text', [
-    b'\n  <?xml version="1.0"?>\n<robot>\n<link name="\xc3\xa4"/></robot>',
-    b'\xef\xbb\xbf<?xml version="1.0"?>\n\n<robot>\n<link name="\xc3\xa4"/></robot>',
-    b'<?xml version="1.0" encoding="iso-8859-1"?>\n\n<robot>\n<link name="\xe4"/></robot>',
-    b'<!-- J\xf6rg -- 20 --->\n<?xml version="1.0"?>\n<robot>\n<link name="\xe4"/></robot>',
-    b'<!-- a\n-- b\n-->\n<robot><link name="\xc3\xa4"/></robot>',
-])
+@pytest.mark.parametrize(
+    'text',
+    [
+        b'\n  <?xml version="1.0"?>\n<robot>\n<link name="\xc3\xa4"/></robot>',
+        b'\xef\xbb\xbf<?xml version="1.0"?>\n\n<robot>\n<link name="\xc3\xa4"/></robot>',
+        b'<?xml version="1.0" encoding="iso-8859-1"?>\n\n<robot>\n<link name="\xe4"/></robot>',
+        b'<!-- J\xf6rg -- 20 --->\n<?xml version="1.0"?>\n<robot>\n<link name="\xe4"/></robot>',
+        b'<!-- a\n-- b\n-->\n<robot><link name="\xc3\xa4"/></robot>',
+    ],
+)
 def test_xml_that_tinyxml_accepts_is_accepted_with_its_line_numbers(text):
     root = parse_xml(text, 's')
     assert root[0].get('name') == 'ä'
@@ -27,8 +30,10 @@ def test_xml_that_tinyxml_accepts_is_accepted_with_its_line_numbers(text):
 
 def test_undeclared_latin_1_is_read_with_a_warning(caplog):
     assert plain_text(b'<a>\n<!-- \xe9 -->\xe9</a>', 'r.urdf') == '<a>\n\xe9</a>'
-    assert caplog.messages == ['r.urdf, line 2: byte 0xe9 is not UTF-8, the text is read as '
-                               'Latin-1; save the file in UTF-8']
+    assert caplog.messages == [
+        'r.urdf, line 2: byte 0xe9 is not UTF-8, the text is read as '
+        'Latin-1; save the file in UTF-8'
+    ]
 
 
 def test_comments_keep_their_line_breaks_and_cdata_has_no_comments():
@@ -37,15 +42,18 @@ def test_comments_keep_their_line_breaks_and_cdata_has_no_comments():
     assert plain_text('<a><![CDATA[<!-- open -->', 's') == '<a><![CDATA[<!-- open -->'
 
 
-@pytest.mark.parametrize(('text', 'plain'), [
-    ('<a id="<STL_BINARY>">t</a>', '<a id="&lt;STL_BINARY>">t</a>'),
-    ("<a\n b='1' c='<\"<'/>", "<a\n b='1' c='&lt;\"&lt;'/>"),
-    ('<a><![CDATA[<b c="<">]]><d e="<"/></a>', '<a><![CDATA[<b c="<">]]><d e="&lt;"/></a>'),
-    # text, an unclosed value and an unclosed tag are left to the parser, which names the line
-    ('<a>"<b>"</a>', '<a>"<b>"</a>'),
-    ('<a b="1>\n<c d="2">', '<a b="1>\n<c d="2">'),
-    ('<a <b c="<', '<a <b c="<'),
-])
+@pytest.mark.parametrize(
+    ('text', 'plain'),
+    [
+        ('<a id="<STL_BINARY>">t</a>', '<a id="&lt;STL_BINARY>">t</a>'),
+        ("<a\n b='1' c='<\"<'/>", "<a\n b='1' c='&lt;\"&lt;'/>"),
+        ('<a><![CDATA[<b c="<">]]><d e="<"/></a>', '<a><![CDATA[<b c="<">]]><d e="&lt;"/></a>'),
+        # text, an unclosed value and an unclosed tag are left to the parser, which names the line
+        ('<a>"<b>"</a>', '<a>"<b>"</a>'),
+        ('<a b="1>\n<c d="2">', '<a b="1>\n<c d="2">'),
+        ('<a <b c="<', '<a <b c="<'),
+    ],
+)
 def test_markup_in_an_attribute_is_escaped(text, plain):
     assert plain_text(text, 's') == plain
 

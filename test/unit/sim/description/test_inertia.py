@@ -47,8 +47,15 @@ def test_diagonal_tensor_keeps_its_axes_and_order():
 
 
 def with_tensor(full):
-    return Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
-                    ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
+    return Inertial(
+        1.0,
+        ixx=full[0, 0],
+        iyy=full[1, 1],
+        izz=full[2, 2],
+        ixy=full[0, 1],
+        ixz=full[0, 2],
+        iyz=full[1, 2],
+    )
 
 
 def random_tensor(seed):
@@ -132,8 +139,15 @@ def test_no_physical_tensor_is_nearer_than_the_one_used(seed):
     random = np.random.default_rng(seed)
     root = random.normal(size=(3, 3))
     full = root + root.T  # usually indefinite
-    given = Inertial(1.0, ixx=full[0, 0], iyy=full[1, 1], izz=full[2, 2],
-                     ixy=full[0, 1], ixz=full[0, 2], iyz=full[1, 2])
+    given = Inertial(
+        1.0,
+        ixx=full[0, 0],
+        iyy=full[1, 1],
+        izz=full[2, 2],
+        ixy=full[0, 1],
+        ixz=full[0, 2],
+        iyz=full[1, 2],
+    )
     used = tensor(possible(given))
     moments = np.linalg.eigvalsh(used)
     assert moments[2] <= moments[0] + moments[1] + 1e-9
@@ -147,11 +161,14 @@ def test_no_physical_tensor_is_nearer_than_the_one_used(seed):
         assert np.linalg.norm(other - full) >= distance - 1e-9
 
 
-@pytest.mark.parametrize('moments', [
-    (1.0, 1.0, 2.0),  # a flat disc
-    (0.12, 0.24, 0.39),  # a plate of 0.125, 0.235 and 0.36, written with two digits
-    (1.0, 1.0, 0.0),  # a rod
-])
+@pytest.mark.parametrize(
+    'moments',
+    [
+        (1.0, 1.0, 2.0),  # a flat disc
+        (0.12, 0.24, 0.39),  # a plate of 0.125, 0.235 and 0.36, written with two digits
+        (1.0, 1.0, 0.0),  # a rod
+    ],
+)
 def test_tensor_physical_up_to_rounding_is_unchanged(moments):
     given = Inertial(1.0, ixx=moments[0], iyy=moments[1], izz=moments[2])
     assert possible(given) is given
@@ -175,37 +192,48 @@ def test_tensor_is_rotated_into_link_axes_about_the_same_centre():
     assert (flat.ixy, flat.ixz, flat.iyz) == pytest.approx((0.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize(('inertial', 'joint_type', 'balanced'), [
-    (Inertial(1.0, Pose((0.0, 0.0, 0.3)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE, True),
-    (Inertial(1.0, Pose((0.0, 0.0, 0.3)), ixx=1.0, iyy=1.0, izz=2.0), PRISMATIC, False),
-    (Inertial(1.0, Pose((0.3, 0.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE, False),
-    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.2, izz=2.0), REVOLUTE, False),
-    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, ixz=0.1), REVOLUTE, False),
-    (Inertial(1.0, Pose(orientation=from_rpy(0.0, 1.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE,
-     False),
-    # The same for a wheel of 5 cm: its imbalance counts relative to its moment about the axis.
-    (Inertial(0.1, Pose((0.0, 0.0, 0.3)), ixx=6e-5, iyy=6e-5, izz=1.2e-4), REVOLUTE, True),
-    (Inertial(0.1, IDENTITY, ixx=6e-5, iyy=8e-5, izz=1.2e-4), REVOLUTE, False),
-    (Inertial(0.1, Pose((0.02, 0.0, 0.0)), ixx=6e-5, iyy=6e-5, izz=1.2e-4), REVOLUTE, False),
-])
+@pytest.mark.parametrize(
+    ('inertial', 'joint_type', 'balanced'),
+    [
+        (Inertial(1.0, Pose((0.0, 0.0, 0.3)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE, True),
+        (Inertial(1.0, Pose((0.0, 0.0, 0.3)), ixx=1.0, iyy=1.0, izz=2.0), PRISMATIC, False),
+        (Inertial(1.0, Pose((0.3, 0.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), REVOLUTE, False),
+        (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.2, izz=2.0), REVOLUTE, False),
+        (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, ixz=0.1), REVOLUTE, False),
+        (
+            Inertial(1.0, Pose(orientation=from_rpy(0.0, 1.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0),
+            REVOLUTE,
+            False,
+        ),
+        # The same for a wheel of 5 cm: its imbalance counts relative to its moment about the axis.
+        (Inertial(0.1, Pose((0.0, 0.0, 0.3)), ixx=6e-5, iyy=6e-5, izz=1.2e-4), REVOLUTE, True),
+        (Inertial(0.1, IDENTITY, ixx=6e-5, iyy=8e-5, izz=1.2e-4), REVOLUTE, False),
+        (Inertial(0.1, Pose((0.02, 0.0, 0.0)), ixx=6e-5, iyy=6e-5, izz=1.2e-4), REVOLUTE, False),
+    ],
+)
 def test_a_wheel_is_balanced_and_a_lever_is_not(inertial, joint_type, balanced):
     assert is_balanced(inertial, JointSpec('j', joint_type, 'a', 'b')) == balanced
 
 
-@pytest.mark.parametrize(('inertial', 'balanced'), [  # 2 % of the moment about the axis
-    (Inertial(1.0, Pose((0.199, 0.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), True),
-    (Inertial(1.0, Pose((0.0, 0.201, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), False),
-    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, iyz=0.028), True),
-    (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, iyz=0.029), False),
-])
+@pytest.mark.parametrize(
+    ('inertial', 'balanced'),
+    [  # 2 % of the moment about the axis
+        (Inertial(1.0, Pose((0.199, 0.0, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), True),
+        (Inertial(1.0, Pose((0.0, 0.201, 0.0)), ixx=1.0, iyy=1.0, izz=2.0), False),
+        (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, iyz=0.028), True),
+        (Inertial(1.0, IDENTITY, ixx=1.0, iyy=1.0, izz=2.0, iyz=0.029), False),
+    ],
+)
 def test_a_wheel_may_be_out_of_balance_by_two_percent(inertial, balanced):
     assert is_balanced(inertial, JointSpec('j', REVOLUTE, 'a', 'b')) == balanced
 
 
 def test_a_wheel_is_balanced_about_the_axis_of_its_joint_not_of_its_link():
     wheel = Inertial(1.0, Pose((0.3, -0.2, 5.0)), ixx=1.0, iyy=1.0, izz=2.0)
-    on, off = (JointSpec('j', REVOLUTE, 'a', 'b', pose=Pose(place))
-               for place in ((0.3, -0.2, 0.1), (-0.3, 0.2, 0.1)))
+    on, off = (
+        JointSpec('j', REVOLUTE, 'a', 'b', pose=Pose(place))
+        for place in ((0.3, -0.2, 0.1), (-0.3, 0.2, 0.1))
+    )
     assert is_balanced(wheel, on)
     assert not is_balanced(wheel, off)
 
@@ -222,8 +250,16 @@ def inertial_of(masses, places):
     apart = places - centre
     second = (masses[:, None] * apart).T @ apart
     full = np.trace(second) * np.eye(3) - second
-    return Inertial(float(masses.sum()), Pose(tuple(centre.tolist())), full[0, 0], full[1, 1],
-                    full[2, 2], full[0, 1], full[0, 2], full[1, 2])
+    return Inertial(
+        float(masses.sum()),
+        Pose(tuple(centre.tolist())),
+        full[0, 0],
+        full[1, 1],
+        full[2, 2],
+        full[0, 1],
+        full[0, 2],
+        full[1, 2],
+    )
 
 
 def moved(pose, places):
@@ -237,15 +273,22 @@ def assert_equal(one, other):
 
 
 def test_parts_weigh_together_what_their_points_do():
-    poses = [Pose((1.0, -2.0, 0.5), from_rpy(0.3, 0.2, 0.1)),
-             Pose((-1.0, 0.0, 3.0), from_rpy(2.0, -1.0, 0.5)), IDENTITY]
+    poses = [
+        Pose((1.0, -2.0, 0.5), from_rpy(0.3, 0.2, 0.1)),
+        Pose((-1.0, 0.0, 3.0), from_rpy(2.0, -1.0, 0.5)),
+        IDENTITY,
+    ]
     bodies = [points_at(seed) for seed in range(3)]
-    merged = merge([(pose, inertial_of(*body))
-                    for pose, body in zip(poses, bodies, strict=True)])
-    assert_equal(merged, inertial_of(
-        np.concatenate([masses for masses, _ in bodies]),
-        np.concatenate([moved(pose, places)
-                        for pose, (_, places) in zip(poses, bodies, strict=True)])))
+    merged = merge([(pose, inertial_of(*body)) for pose, body in zip(poses, bodies, strict=True)])
+    assert_equal(
+        merged,
+        inertial_of(
+            np.concatenate([masses for masses, _ in bodies]),
+            np.concatenate(
+                [moved(pose, places) for pose, (_, places) in zip(poses, bodies, strict=True)]
+            ),
+        ),
+    )
     assert merged.pose.orientation == NO_ROTATION
 
 
@@ -253,10 +296,10 @@ def test_all_of_a_tensor_is_rotated_into_link_axes():
     masses, places = points_at(7)
     own = inertial_of(masses, places - masses @ places / masses.sum())
     pose = Pose((0.1, 0.2, 0.3), from_rpy(0.4, -0.5, 2.0))
-    turned = inertia.in_link_axes(Inertial(own.mass, pose, own.ixx, own.iyy, own.izz, own.ixy,
-                                           own.ixz, own.iyz))
-    assert_equal(turned, inertial_of(
-        masses, moved(pose, places - masses @ places / masses.sum())))
+    turned = inertia.in_link_axes(
+        Inertial(own.mass, pose, own.ixx, own.iyy, own.izz, own.ixy, own.ixz, own.iyz)
+    )
+    assert_equal(turned, inertial_of(masses, moved(pose, places - masses @ places / masses.sum())))
 
 
 def test_wrench_at_a_point_accelerates_a_free_link_by_newton_and_euler():
@@ -269,8 +312,11 @@ def test_wrench_at_a_point_accelerates_a_free_link_by_newton_and_euler():
     axes = np.array([rotate(turn, rotate(com.orientation, axis)) for axis in np.eye(3).tolist()]).T
     spin = np.linalg.solve(axes @ tensor(own) @ axes.T, torque - np.cross(arm, force))
     linear = force / own.mass - np.cross(spin, arm)
-    np.testing.assert_allclose(mobility(link, place, turn) @ np.concatenate((torque, force)),
-                               np.concatenate((spin, linear)), rtol=1e-9)
+    np.testing.assert_allclose(
+        mobility(link, place, turn) @ np.concatenate((torque, force)),
+        np.concatenate((spin, linear)),
+        rtol=1e-9,
+    )
 
 
 def test_numbers_are_rounded_to_12_digits_of_the_largest_and_have_no_negative_zero():

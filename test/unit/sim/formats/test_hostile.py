@@ -41,8 +41,9 @@ class Opened:
     def _on_event(self, event, arguments):
         if self.listening and event == 'open' and isinstance(arguments[0], str | bytes):
             self.paths.append(os.fsdecode(arguments[0]))
-        if self.listening and event.startswith(('socket.connect', 'subprocess.', 'os.system',
-                                                'os.exec', 'os.posix_spawn')):
+        if self.listening and event.startswith(
+            ('socket.connect', 'subprocess.', 'os.system', 'os.exec', 'os.posix_spawn')
+        ):
             self.paths.append(event)
 
 
@@ -60,8 +61,9 @@ def read(case, folder):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return open_world(path, find_model=ModelSearch([folder]), find_package=package_directory)
     if case.kind == 'sdf':
-        spec, _ = load_sdf(text, 'hostile', find_model=ModelSearch([folder]),
-                           find_package=package_directory)
+        spec, _ = load_sdf(
+            text, 'hostile', find_model=ModelSearch([folder]), find_package=package_directory
+        )
     else:
         spec, _ = load_urdf(text, 'hostile', find_package=package_directory)
     with closing(EngineFiles()) as meshes:
@@ -69,8 +71,11 @@ def read(case, folder):
 
 
 def may_be_opened(path, case, folder):
-    return path == case.opens or path.startswith((str(folder), str(FOLDER), str(BUILT_IN))) \
-        or path.endswith('.pyc')  # a lazy import, of a codec for example
+    return (
+        path == case.opens
+        or path.startswith((str(folder), str(FOLDER), str(BUILT_IN)))
+        or path.endswith('.pyc')
+    )  # a lazy import, of a codec for example
 
 
 @pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)

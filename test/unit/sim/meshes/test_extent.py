@@ -22,14 +22,17 @@ endsolid
 """
 
 
-@pytest.mark.parametrize(('shape', 'roll', 'half'), [
-    (Box((2.0, 4.0, 6.0)), 0.0, (1.0, 2.0, 3.0)),
-    (Box((2.0, 4.0, 6.0)), math.pi / 2.0, (1.0, 3.0, 2.0)),
-    (Box((2.0, 2.0, 2.0)), math.pi / 4.0, (1.0, 2.0 * ROOT, 2.0 * ROOT)),
-    (Sphere(2.0), 1.0, (2.0, 2.0, 2.0)),
-    (Cylinder(1.0, 4.0), math.pi / 2.0, (1.0, 2.0, 1.0)),
-    (Cylinder(1.0, 4.0), math.pi / 4.0, (1.0, 3.0 * ROOT, 3.0 * ROOT)),
-])
+@pytest.mark.parametrize(
+    ('shape', 'roll', 'half'),
+    [
+        (Box((2.0, 4.0, 6.0)), 0.0, (1.0, 2.0, 3.0)),
+        (Box((2.0, 4.0, 6.0)), math.pi / 2.0, (1.0, 3.0, 2.0)),
+        (Box((2.0, 2.0, 2.0)), math.pi / 4.0, (1.0, 2.0 * ROOT, 2.0 * ROOT)),
+        (Sphere(2.0), 1.0, (2.0, 2.0, 2.0)),
+        (Cylinder(1.0, 4.0), math.pi / 2.0, (1.0, 2.0, 1.0)),
+        (Cylinder(1.0, 4.0), math.pi / 4.0, (1.0, 3.0 * ROOT, 3.0 * ROOT)),
+    ],
+)
 def test_box_around_a_shape_is_exact(shape, roll, half):
     pose = Pose((10.0, 0.0, -5.0), from_rpy(roll, 0.0, 0.0))
     low, high = extent(shape, pose)
@@ -40,8 +43,9 @@ def test_box_around_a_shape_is_exact(shape, roll, half):
 def test_box_around_a_mesh_is_that_of_its_vertices(tmp_path):
     path = tmp_path / 'tip.stl'
     path.write_text(TIP)
-    low, high = extent(Mesh(str(path), (1.0, 1.0, 2.0)), Pose(
-        (0.0, 0.0, 1.0), from_rpy(math.pi, 0.0, 0.0)))
+    low, high = extent(
+        Mesh(str(path), (1.0, 1.0, 2.0)), Pose((0.0, 0.0, 1.0), from_rpy(math.pi, 0.0, 0.0))
+    )
     assert low == pytest.approx((0.0, -2.0, -5.0))
     assert high == pytest.approx((1.0, 0.0, 1.0))
 

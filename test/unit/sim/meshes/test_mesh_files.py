@@ -19,8 +19,10 @@ from rosbots_description.sim.meshes.loader import GREY, check_mesh, read_mesh, v
 from rosbots_description.sim.meshes.stl import read_stl
 
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
-ASCII_STL = ('solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n'
-             'endloop\nendfacet\nendsolid s\n')
+ASCII_STL = (
+    'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n'
+    'endloop\nendfacet\nendsolid s\n'
+)
 BINARY_STL = b' ' * 80 + struct.pack('<I12fH', 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
 
 COLLADA = """<?xml version="1.0"?>
@@ -48,8 +50,13 @@ IDENTITY = '1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1'
 
 
 def collada(**changes):
-    values = {'unit': '1', 'up': 'Z_UP', 'points': '0 0 0 1 0 0 0 1 0', 'index': '0 1 2',
-              'matrix': IDENTITY}
+    values = {
+        'unit': '1',
+        'up': 'Z_UP',
+        'points': '0 0 0 1 0 0 0 1 0',
+        'index': '0 1 2',
+        'matrix': IDENTITY,
+    }
     return COLLADA.format(**(values | changes))
 
 
@@ -75,12 +82,20 @@ def corners(path):
     return vertices[faces[0]].tolist()
 
 
-@pytest.mark.parametrize(('name', 'content'), [
-    ('m.obj', TRIANGLE), ('M.OBJ', TRIANGLE), ('m.stl', ASCII_STL), ('M.STL', BINARY_STL),
-    ('m.dae', collada()), ('M.DAE', collada()), ('y.dae', collada(up='Y_UP')),
-    ('quad.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nf 1 2 3\nf 1 2 3 4\n'),
-    ('negative.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n'),
-])
+@pytest.mark.parametrize(
+    ('name', 'content'),
+    [
+        ('m.obj', TRIANGLE),
+        ('M.OBJ', TRIANGLE),
+        ('m.stl', ASCII_STL),
+        ('M.STL', BINARY_STL),
+        ('m.dae', collada()),
+        ('M.DAE', collada()),
+        ('y.dae', collada(up='Y_UP')),
+        ('quad.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1\nf 1 2 3\nf 1 2 3 4\n'),
+        ('negative.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n'),
+    ],
+)
 def test_each_format_gives_the_same_triangle(write, name, content):
     assert corners(write(name, content)) == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
@@ -91,8 +106,12 @@ def test_collada_reader_is_imported_on_request_only():
         "before = 'collada' in sys.modules; loader.load_readers(); "
         "sys.exit(before or 'collada' not in sys.modules)"
     )
-    subprocess.run([sys.executable, '-c', program], check=True, timeout=60,
-                   env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)})
+    subprocess.run(
+        [sys.executable, '-c', program],
+        check=True,
+        timeout=60,
+        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
+    )
 
 
 def test_unit_and_node_transform_of_a_collada_file_are_applied(write):
@@ -119,18 +138,27 @@ def test_colour_of_a_collada_material_is_read(write):
 
 
 def test_use_of_a_texture_is_detected(write):
-    picture = ('<library_images><image id="i"><init_from>i.png</init_from></image></library_images>'
-               '<library_effects>')
-    parameters = ('<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface>'
-                  '</newparam><newparam sid="r"><sampler2D><source>s</source></sampler2D>'
-                  '</newparam><technique sid="t">')
-    textured = (collada().replace('<library_effects>', picture)
-                .replace('<technique sid="t">', parameters)
-                .replace('<color>0.2 0.4 0.6 1</color>', '<texture texture="r" texcoord="UV"/>'))
+    picture = (
+        '<library_images><image id="i"><init_from>i.png</init_from></image></library_images>'
+        '<library_effects>'
+    )
+    parameters = (
+        '<newparam sid="s"><surface type="2D"><init_from>i</init_from></surface>'
+        '</newparam><newparam sid="r"><sampler2D><source>s</source></sampler2D>'
+        '</newparam><technique sid="t">'
+    )
+    textured = (
+        collada()
+        .replace('<library_effects>', picture)
+        .replace('<technique sid="t">', parameters)
+        .replace('<color>0.2 0.4 0.6 1</color>', '<texture texture="r" texcoord="UV"/>')
+    )
     assert read_mesh(write('textured.dae', textured)).textured
     assert not read_mesh(write('m.dae', collada())).textured
-    write('m.mtl', 'newmtl a\nmap_Kd i.png\nKd 1 0 0\nnewmtl b\nKd 1 0 0\nmap_Kd i.png\n'
-                   'newmtl c\nKd 1 0 0\n')
+    write(
+        'm.mtl',
+        'newmtl a\nmap_Kd i.png\nKd 1 0 0\nnewmtl b\nKd 1 0 0\nmap_Kd i.png\nnewmtl c\nKd 1 0 0\n',
+    )
     for material, expected in (('a', True), ('b', True), ('c', False)):
         path = write(f'{material}.obj', f'mtllib m.mtl\nusemtl {material}\n{TRIANGLE}')
         assert read_mesh(path).textured is expected
@@ -139,8 +167,11 @@ def test_use_of_a_texture_is_detected(write):
 
 def test_obj_has_a_part_for_each_material_grey_without_one(write):
     write('m.mtl', 'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n')
-    path = write('m.obj', 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n'
-                          'usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 4\n')
+    path = write(
+        'm.obj',
+        'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n'
+        'usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 4\n',
+    )
     assert {part[3] for part in visual_parts(path)} == {(1, 0, 0, 1), (0, 0, 1, 1)}
     assert visual_parts(write('plain.obj', TRIANGLE))[0][3] == GREY
 
@@ -192,10 +223,12 @@ def test_error_names_an_invalid_file(write, name):
 
 
 def test_normals_that_are_not_finite_are_accepted(write):
-    normals = ('<source id="n"><float_array id="na" count="3">NaN NaN NaN</float_array>'
-               '<technique_common><accessor source="#na" count="1" stride="3">'
-               '<param name="X" type="float"/><param name="Y" type="float"/>'
-               '<param name="Z" type="float"/></accessor></technique_common></source>')
+    normals = (
+        '<source id="n"><float_array id="na" count="3">NaN NaN NaN</float_array>'
+        '<technique_common><accessor source="#na" count="1" stride="3">'
+        '<param name="X" type="float"/><param name="Y" type="float"/>'
+        '<param name="Z" type="float"/></accessor></technique_common></source>'
+    )
     check_mesh(write('m.dae', collada().replace(VERTICES, normals + VERTICES)))
 
 
@@ -319,9 +352,12 @@ def test_deleted_file_is_written_again(write, files):
 
 def test_scale_kind_and_content_have_separate_files(write, files):
     path = write('m.obj', TRIANGLE)
-    made = {files.collision_hull(path), files.collision_surface(path),
-            files.collision_hull(path, (1.0, 1.0, math.pi)),
-            files.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n'))}
+    made = {
+        files.collision_hull(path),
+        files.collision_surface(path),
+        files.collision_hull(path, (1.0, 1.0, math.pi)),
+        files.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n')),
+    }
     assert len(made) == 4
 
 

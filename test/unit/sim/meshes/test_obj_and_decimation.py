@@ -20,16 +20,19 @@ def area(part):
     return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
 
 
-@pytest.mark.parametrize(('faces', 'count', 'expected'), [
-    ('f 1 2 3 4\n', 2, 1.0),  # quads only
-    ('f 1/1 2/1 3/1 4/1\n', 2, 1.0),
-    ('f 1//1 2//1 3//1\nf 1 3 4\nvn 0 0 1\n', 2, 1.0),
-    ('f -6 -5 -4 -3\n', 2, 1.0),
-    ('f 1 2 3 4 5\n', 3, 1.5),
-    ('f 1 2 3 4 5 6\n', 4, 1.65),
-    ('f 1 2 \\\n3 4\n', 2, 1.0),
-    ('f 1//1 2//1 3//1\nf 1 2\nf 4//1 1//1 3//1\nvn 0 0 1\n', 2, 1.0),  # with an edge
-])
+@pytest.mark.parametrize(
+    ('faces', 'count', 'expected'),
+    [
+        ('f 1 2 3 4\n', 2, 1.0),  # quads only
+        ('f 1/1 2/1 3/1 4/1\n', 2, 1.0),
+        ('f 1//1 2//1 3//1\nf 1 3 4\nvn 0 0 1\n', 2, 1.0),
+        ('f -6 -5 -4 -3\n', 2, 1.0),
+        ('f 1 2 3 4 5\n', 3, 1.5),
+        ('f 1 2 3 4 5 6\n', 4, 1.65),
+        ('f 1 2 \\\n3 4\n', 2, 1.0),
+        ('f 1//1 2//1 3//1\nf 1 2\nf 4//1 1//1 3//1\nvn 0 0 1\n', 2, 1.0),  # with an edge
+    ],
+)
 def test_polygons_become_triangles(faces, count, expected):
     (part,) = parts_of(CORNERS + faces)
     assert len(part.faces) == count
@@ -52,10 +55,14 @@ def test_a_vertex_with_two_normals_becomes_two():
 @pytest.mark.parametrize('corner', ['{}', '{0}//{0}', '{0}/{0}/{0}'])
 def test_a_large_file_is_read_in_little_memory(corner):
     count = 5000
-    content = ''.join(f'v {i}.123456 0.123456 0.123456\nvn 0.123456 {i} 0.123456\n'
-                      for i in range(count))
-    content += ''.join('f {} {} {}\n'.format(*(corner.format(i + k) for k in range(1, 4)))
-                       for i in range(count - 2) for _ in range(2))
+    content = ''.join(
+        f'v {i}.123456 0.123456 0.123456\nvn 0.123456 {i} 0.123456\n' for i in range(count)
+    )
+    content += ''.join(
+        'f {} {} {}\n'.format(*(corner.format(i + k) for k in range(1, 4)))
+        for i in range(count - 2)
+        for _ in range(2)
+    )
     tracemalloc.start()
     try:
         parts_of(content)
@@ -70,9 +77,12 @@ def test_fine_surface_is_decimated_in_place():
     x, y = np.meshgrid(np.linspace(0, 1, count), np.linspace(0, 1, count), indexing='ij')
     vertices = np.stack([x.ravel(), y.ravel(), np.zeros(count**2)], axis=1)
     i = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
-    faces = np.concatenate([
-        np.stack([i, i + count, i + 1], axis=1), np.stack([i + 1, i + count, i + count + 1], axis=1)
-    ])
+    faces = np.concatenate(
+        [
+            np.stack([i, i + count, i + 1], axis=1),
+            np.stack([i + 1, i + count, i + count + 1], axis=1),
+        ]
+    )
     fewer, triangles, kept, cell = decimated(vertices, faces, 2000)
     assert 500 < len(triangles) <= 2000
     assert (fewer == vertices[kept]).all()

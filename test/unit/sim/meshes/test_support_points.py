@@ -21,7 +21,11 @@ def test_first_of_equally_far_points_is_used():
 def test_result_does_not_depend_on_the_batch_size(at_once, monkeypatch):
     random = np.random.default_rng(1)
     points, directions = random.normal(size=(50, 3)), random.normal(size=(40, 3))
-    expected = sorted({int(np.argmax(a * points[:, 0] + b * points[:, 1] + c * points[:, 2]))
-                       for a, b, c in directions})
+    expected = sorted(
+        {
+            int(np.argmax(a * points[:, 0] + b * points[:, 1] + c * points[:, 2]))
+            for a, b, c in directions
+        }
+    )
     monkeypatch.setitem(support_points.__globals__, '_AT_ONCE', at_once)
     assert support_points(points, directions) == expected

@@ -14,8 +14,9 @@ METHODS = [name for name in vars(PhysicsEngine) if not name.startswith('_')]
 
 
 def parameters(function):
-    return [(one.name, one.kind, one.default)
-            for one in inspect.signature(function).parameters.values()]
+    return [
+        (one.name, one.kind, one.default) for one in inspect.signature(function).parameters.values()
+    ]
 
 
 @pytest.mark.parametrize('engine', [Engine, FakeEngine])

@@ -201,8 +201,11 @@ ForkServer(lambda: work, 'test').run(b'', 60.0)
 def test_processes_end_with_their_parent(tmp_path, does, victim):
     note = tmp_path / 'note'
     environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
-    parent = subprocess.Popen([sys.executable, '-c', ABANDONED.format(does=does), str(note)],
-                              env=environment, stderr=subprocess.DEVNULL)
+    parent = subprocess.Popen(
+        [sys.executable, '-c', ABANDONED.format(does=does), str(note)],
+        env=environment,
+        stderr=subprocess.DEVNULL,
+    )
     try:
         wait_until(lambda: note.exists() and note.read_text().endswith('\n'))
         server, child = map(int, note.read_text().split())
@@ -279,14 +282,17 @@ def test_dead_server_is_replaced_and_no_zombie_remains(server, number, caplog):
         assert server.run(b'world', ALLOWANCE) == 'world'
         assert not os.path.exists(f'/proc/{dead}')
         assert caplog.messages == times * [
-            f'the process test has ended (killed by signal {number}); it is started again']
+            f'the process test has ended (killed by signal {number}); it is started again'
+        ]
 
 
 def test_server_killed_under_many_callers_is_replaced_once(server, caplog):
     os.kill(server._server.process, signal.SIGSTOP)  # so that all of them wait
     reports = []
-    callers = [threading.Thread(target=lambda: reports.append(server.run(b'all', ALLOWANCE)))
-               for _ in range(8)]
+    callers = [
+        threading.Thread(target=lambda: reports.append(server.run(b'all', ALLOWANCE)))
+        for _ in range(8)
+    ]
     for caller in callers:
         caller.start()
     os.kill(server._server.process, signal.SIGKILL)

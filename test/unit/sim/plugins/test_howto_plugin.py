@@ -45,8 +45,13 @@ def test_the_example_is_short():
 @pytest.mark.parametrize('path', BLOCKS)
 def test_the_example_is_lint_clean(path):
     checked = subprocess.run(
-        ['ruff', 'check', '--stdin-filename', f'src/{path}.py', '-'], input=BLOCKS[path],
-        cwd=ROOT, capture_output=True, text=True, check=False)
+        ['ruff', 'check', '--stdin-filename', f'src/{path}.py', '-'],
+        input=BLOCKS[path],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 

@@ -71,23 +71,31 @@ def seen(plugin, steps):
     return found
 
 
-@pytest.mark.parametrize(('cls', 'rate', 'steps'), [
-    (Watcher, '100', [11, 21, 31]),
-    (LaterRounded, '20', [51, 102]),
-    (Exact, '100', [10, 20, 30]),
-    (Exact, '30', [34, 67, 100]),
-    (Rounded, '30', [34, 68, 102]),
-    (Exact, '0', [1, 2, 3]),
-    (Watcher, '-1', [1, 2, 3]),
-    (Exact, '2000', [1, 2, 3]),
-])
+@pytest.mark.parametrize(
+    ('cls', 'rate', 'steps'),
+    [
+        (Watcher, '100', [11, 21, 31]),
+        (LaterRounded, '20', [51, 102]),
+        (Exact, '100', [10, 20, 30]),
+        (Exact, '30', [34, 67, 100]),
+        (Rounded, '30', [34, 68, 102]),
+        (Exact, '0', [1, 2, 3]),
+        (Watcher, '-1', [1, 2, 3]),
+        (Exact, '2000', [1, 2, 3]),
+    ],
+)
 def test_timing_is_that_of_gazebos_four_rules(cls, rate, steps):
     assert seen(make(cls, rate), 110)[:3] == steps[:3]
 
 
-@pytest.mark.parametrize(('cls', 'steps'), [
-    (Watcher, [11, 21, 31]), (Exact, [10, 20, 30]), (Rounded, [17, 27, 37]),
-])
+@pytest.mark.parametrize(
+    ('cls', 'steps'),
+    [
+        (Watcher, [11, 21, 31]),
+        (Exact, [10, 20, 30]),
+        (Rounded, [17, 27, 37]),
+    ],
+)
 def test_plugin_loaded_later_runs_in_the_steps_of_the_others(cls, steps):
     model = fake_model()
     model.world.run(7)

@@ -27,9 +27,13 @@ from rosbots_description.sim.rendering import Look, gltf, visual_gltf
 def covered(tmp_path, monkeypatch):
     """A mesh of one triangle, covered by the image p.bmp."""
     part = MeshPart(
-        np.array([(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (0.0, 1.0, 0.0)]), np.array([(0, 1, 2)]), None,
-        (0.5, 0.5, 0.5, 1.0), texcoords=np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]),
-        image=str(tmp_path / 'p.bmp'))
+        np.array([(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (0.0, 1.0, 0.0)]),
+        np.array([(0, 1, 2)]),
+        None,
+        (0.5, 0.5, 0.5, 1.0),
+        texcoords=np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]),
+        image=str(tmp_path / 'p.bmp'),
+    )
     monkeypatch.setattr(gltf, 'read_mesh', lambda path: MeshData('', (part,)))
     return Mesh('m.dae', (1.0, 2.0, 1.0))
 
@@ -39,7 +43,7 @@ def read(geometry, material=None, look=Look.SOLID):
     content = visual_gltf(Visual('v', geometry, material=material), look)
     magic, version, length, size = struct.unpack_from('<4sIII', content)
     assert (magic, version, length) == (b'glTF', 2, len(content))
-    tree, data = json.loads(content[20:20 + size]), content[28 + size:]
+    tree, data = json.loads(content[20 : 20 + size]), content[28 + size :]
     assert tree['buffers'] == [{'byteLength': len(data)}]
 
     def array(number):
@@ -47,26 +51,34 @@ def read(geometry, material=None, look=Look.SOLID):
         view = tree['bufferViews'][accessor['bufferView']]
         width = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3}[accessor['type']]
         kind = {5126: '<f4', 5125: '<u4'}[accessor['componentType']]
-        found = np.frombuffer(data[view['byteOffset']:][:view['byteLength']], kind)
+        found = np.frombuffer(data[view['byteOffset'] :][: view['byteLength']], kind)
         return found.reshape(accessor['count'], width)
+
     return tree, array
 
 
 def corners(geometry):
     """Return the lowest and highest corner of what is drawn."""
     tree, array = read(geometry)
-    points = np.concatenate([array(primitive['attributes']['POSITION'])
-                             for primitive in tree['meshes'][0]['primitives']])
+    points = np.concatenate(
+        [
+            array(primitive['attributes']['POSITION'])
+            for primitive in tree['meshes'][0]['primitives']
+        ]
+    )
     points = points * tree['nodes'][0]['scale']
     return points.min(axis=0), points.max(axis=0)
 
 
-@pytest.mark.parametrize(('geometry', 'low', 'high'), [
-    (Box((1.0, 2.0, 3.0)), (-0.5, -1.0, -1.5), (0.5, 1.0, 1.5)),
-    (Sphere(0.5), (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)),
-    (Cylinder(0.2, 3.0), (-0.2, -0.2, -1.5), (0.2, 0.2, 1.5)),
-    (Plane(size=(4.0, 6.0)), (-2.0, -3.0, 0.0), (2.0, 3.0, 0.0)),
-])
+@pytest.mark.parametrize(
+    ('geometry', 'low', 'high'),
+    [
+        (Box((1.0, 2.0, 3.0)), (-0.5, -1.0, -1.5), (0.5, 1.0, 1.5)),
+        (Sphere(0.5), (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5)),
+        (Cylinder(0.2, 3.0), (-0.2, -0.2, -1.5), (0.2, 0.2, 1.5)),
+        (Plane(size=(4.0, 6.0)), (-2.0, -3.0, 0.0), (2.0, 3.0, 0.0)),
+    ],
+)
 def test_a_shape_has_its_size(geometry, low, high):
     np.testing.assert_allclose(corners(geometry), (low, high), atol=1e-6)
 
@@ -92,11 +104,14 @@ def test_a_mesh_whose_image_cannot_be_read_is_shown_without(covered, tmp_path, c
 
 
 def test_colours_are_linear_and_what_glows_or_shines_through_does():
-    tree, _ = read(Sphere(1.0), Material((0.5, 0.0, 1.0, 0.25), reflection=Reflection(
-        emissive=(1.0, 0.0, 0.0), lit=False)))
+    tree, _ = read(
+        Sphere(1.0),
+        Material((0.5, 0.0, 1.0, 0.25), reflection=Reflection(emissive=(1.0, 0.0, 0.0), lit=False)),
+    )
     (material,) = tree['materials']
     assert material['pbrMetallicRoughness']['baseColorFactor'] == pytest.approx(
-        [0.2140, 0.0, 1.0, 0.25], abs=1e-4)  # sRGB 0.5 is 0.214 of the light
+        [0.2140, 0.0, 1.0, 0.25], abs=1e-4
+    )  # sRGB 0.5 is 0.214 of the light
     assert material['emissiveFactor'] == [1.0, 0.0, 0.0]
     assert material['alphaMode'] == 'BLEND'
     assert 'KHR_materials_unlit' in material['extensions']
@@ -125,8 +140,12 @@ def test_a_wireframe_has_each_edge_once():
 
 
 def test_what_shines_is_smoother_than_what_does_not():
-    rough = [read(Sphere(1.0), gazebo_material(name))[0]['materials'][0]['pbrMetallicRoughness']
-             ['roughnessFactor'] for name in ('Gazebo/Yellow', 'Gazebo/Red', 'Gazebo/White')]
+    rough = [
+        read(Sphere(1.0), gazebo_material(name))[0]['materials'][0]['pbrMetallicRoughness'][
+            'roughnessFactor'
+        ]
+        for name in ('Gazebo/Yellow', 'Gazebo/Red', 'Gazebo/White')
+    ]
     assert rough == sorted(rough, reverse=True)
     assert rough[0] == 1.0
     assert rough[2] < rough[1]

@@ -28,27 +28,31 @@ def place(tmp_path):
 @pytest.fixture
 def addresses(place):
     return Addresses(
-        ModelSearch([place / 'models']), {'bot': str(place / 'package')}.get,
-        FileSearch([place / 'share', lambda: [place / 'more']]))
+        ModelSearch([place / 'models']),
+        {'bot': str(place / 'package')}.get,
+        FileSearch([place / 'share', lambda: [place / 'more']]),
+    )
 
 
-@pytest.mark.parametrize(('uri', 'where'), [
-    ('model://chair/seat.obj', 'model path'),
-    ('model:///chair/seat.obj', 'model path'),
-    ('package://bot/seat.obj', 'package'),
-    ('file://models/chair/seat.obj', 'resource path'),
-    ('models/chair/seat.obj', 'resource path'),
-    ('file://chair/seat.obj', 'resource path'),
-    ('file://stool/seat.obj', 'its models folder'),
-    ('file://lamp/seat.obj', 'second resource path'),
-    ('file://meshes/seat.obj', 'beside the file'),
-    ('meshes/seat.obj', 'beside the file'),
-    ('file://{place}/package/seat.obj', 'package'),
-    ('{place}/package/seat.obj', 'package'),
-])
+@pytest.mark.parametrize(
+    ('uri', 'where'),
+    [
+        ('model://chair/seat.obj', 'model path'),
+        ('model:///chair/seat.obj', 'model path'),
+        ('package://bot/seat.obj', 'package'),
+        ('file://models/chair/seat.obj', 'resource path'),
+        ('models/chair/seat.obj', 'resource path'),
+        ('file://chair/seat.obj', 'resource path'),
+        ('file://stool/seat.obj', 'its models folder'),
+        ('file://lamp/seat.obj', 'second resource path'),
+        ('file://meshes/seat.obj', 'beside the file'),
+        ('meshes/seat.obj', 'beside the file'),
+        ('file://{place}/package/seat.obj', 'package'),
+        ('{place}/package/seat.obj', 'package'),
+    ],
+)
 def test_an_address_is_found_where_gazebo_finds_it(place, addresses, uri, where):
-    found = addresses.path(
-        etree.Element('uri'), uri.format(place=place), str(place / 'worlds'))
+    found = addresses.path(etree.Element('uri'), uri.format(place=place), str(place / 'worlds'))
     assert found == str(place / FILES[where])
 
 
@@ -64,14 +68,24 @@ def test_the_resource_path_precedes_the_own_folder_of_file_addresses_only(place,
 def test_what_is_not_found_names_all_places_and_the_cure(place, addresses, uri):
     with pytest.raises(AbsentError) as caught:
         addresses.path(etree.Element('uri'), uri, str(place / 'worlds'))
-    for part in (f"'{uri}'", f'{place}/share, {place}/more, {place}/worlds',
-                 'add the folder that holds it to GAZEBO_RESOURCE_PATH'):
+    for part in (
+        f"'{uri}'",
+        f'{place}/share, {place}/more, {place}/worlds',
+        'add the folder that holds it to GAZEBO_RESOURCE_PATH',
+    ):
         assert part in str(caught.value)
 
 
-@pytest.mark.parametrize('uri', [
-    'file://../secret', '../secret', 'file://models/../../secret', 'model://../secret',
-    'package://bot/../secret'])
+@pytest.mark.parametrize(
+    'uri',
+    [
+        'file://../secret',
+        '../secret',
+        'file://models/../../secret',
+        'model://../secret',
+        'package://bot/../secret',
+    ],
+)
 def test_no_address_leaves_its_folder(place, addresses, uri):
     (place / 'secret').touch()
     with pytest.raises(ModelError):

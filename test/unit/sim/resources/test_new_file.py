@@ -14,8 +14,7 @@ def test_a_file_is_written_with_the_permissions_of_any_other(tmp_path):
     other.touch()
     write_world(str(tmp_path / 'a.world'), 'text')
     assert (tmp_path / 'a.world').read_text() == 'text'
-    assert stat.S_IMODE((tmp_path / 'a.world').stat().st_mode) == stat.S_IMODE(
-        other.stat().st_mode)
+    assert stat.S_IMODE((tmp_path / 'a.world').stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
 
 
 def test_a_file_that_is_there_is_overwritten_only_if_asked(tmp_path):
@@ -28,14 +27,17 @@ def test_a_file_that_is_there_is_overwritten_only_if_asked(tmp_path):
     assert path.read_text() == 'new'
 
 
-@pytest.mark.parametrize(('path', 'reason'), [
-    ('here.world', 'not an absolute path'),
-    ('/tmp/../etc/passwd', 'ends in .world or .sdf'),
-    ('/nowhere/at/all.world', 'No such file or directory'),
-    ('/dev/null/a.world', 'Not a directory'),
-    ('/tmp/a\0.world', 'cannot be written: '),
-    (f'/tmp/{"a" * 300}.world', 'File name too long'),
-])
+@pytest.mark.parametrize(
+    ('path', 'reason'),
+    [
+        ('here.world', 'not an absolute path'),
+        ('/tmp/../etc/passwd', 'ends in .world or .sdf'),
+        ('/nowhere/at/all.world', 'No such file or directory'),
+        ('/dev/null/a.world', 'Not a directory'),
+        ('/tmp/a\0.world', 'cannot be written: '),
+        (f'/tmp/{"a" * 300}.world', 'File name too long'),
+    ],
+)
 def test_a_path_that_is_not_fit_is_refused_in_one_sentence(path, reason):
     with pytest.raises(SimError, match=reason) as error:
         write_world(path, 'text')

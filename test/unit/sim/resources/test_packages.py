@@ -37,8 +37,7 @@ def test_nested_and_ignored_packages_are_not_searched(tmp_path):
     assert search('hidden') is None
 
 
-def test_order_of_search_is_enclosing_package_given_path_ros_path(
-        tmp_path, monkeypatch):
+def test_order_of_search_is_enclosing_package_given_path_ros_path(tmp_path, monkeypatch):
     first = make_package(tmp_path / 'a' / 'robot', 'robot')
     second = make_package(tmp_path / 'b' / 'robot', 'robot')
     third = make_package(tmp_path / 'c' / 'robot', 'robot')

@@ -43,8 +43,13 @@ finally:
 def run(*command, **environment):
     python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
     return subprocess.run(
-        command, env={'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **environment},
-        capture_output=True, text=True, timeout=60, check=False)
+        command,
+        env={'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
 
 
 @pytest.fixture
@@ -102,17 +107,30 @@ def test_error_without_any_space_names_the_mesh_and_all_folders(folder, places):
     assert str(caught.value) == (
         f"mesh file '/models/bot.dae' cannot be made ready: nothing can be written in {places[0]} "
         f'(No such file or directory) nor in {places[1]} (No such file or directory); '
-        'make room there, or set TMPDIR to a folder that has some')
+        'make room there, or set TMPDIR to a folder that has some'
+    )
 
 
-@pytest.mark.parametrize(('full', 'code', 'message'), [
-    (1, 0, '/dev/shm/test_'),
-    (2, 1, '(No space left on device) nor in /dev/shm (No space left on device)'),
-])
+@pytest.mark.parametrize(
+    ('full', 'code', 'message'),
+    [
+        (1, 0, '/dev/shm/test_'),
+        (2, 1, '(No space left on device) nor in /dev/shm (No space left on device)'),
+    ],
+)
 def test_shared_memory_replaces_a_full_disk(tmp_path, full, code, message):
     places = [str(tmp_path), scratch.MEMORY][:full]
-    done = run(*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, TMPDIR=str(tmp_path),
-               PYTHON=sys.executable, PROGRAM=WRITE)
+    done = run(
+        *unshare('mount'),
+        'sh',
+        '-c',
+        FILL,
+        'sh',
+        *places,
+        TMPDIR=str(tmp_path),
+        PYTHON=sys.executable,
+        PROGRAM=WRITE,
+    )
     if done.returncode == NOT_PERMITTED:
         pytest.skip(f'this machine lets nobody mount a disk: {done.stderr.strip()}')
     assert done.returncode == code, done.stderr
@@ -152,7 +170,8 @@ def test_the_folder_is_gone_after_the_process_was_killed(tmp_path):
         'from rosbots_description.sim.resources.scratch import ScratchFolder\n'
         'folder = ScratchFolder("killed_")\n'
         'print(folder.write("m.obj", b"x", "m"), flush=True)\n'
-        'os.kill(os.getpid(), signal.SIGKILL)\n')
+        'os.kill(os.getpid(), signal.SIGKILL)\n'
+    )
     ended = run(sys.executable, '-c', program, TMPDIR=str(tmp_path))
     assert ended.returncode == -signal.SIGKILL, ended.stderr
     assert ended.stdout.startswith(f'{tmp_path}/killed_')

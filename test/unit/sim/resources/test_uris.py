@@ -30,7 +30,8 @@ def test_error_names_an_unknown_package():
 def test_all_uris_are_substituted_and_meshes_keep_the_original():
     root = parse_xml(
         '<robot><mesh filename="package://bot/m.dae"/>'
-        '<plugin><config>package://odd/c.yaml</config></plugin></robot>', 's',
+        '<plugin><config>package://odd/c.yaml</config></plugin></robot>',
+        's',
     )
     substitute_in_tree(root, FOLDERS.get)
     assert root.find('mesh').get('filename') == '/opt/bot/m.dae'
@@ -49,18 +50,27 @@ def test_error_about_an_unknown_package_has_its_line():
         substitute_in_tree(root, FOLDERS.get)
 
 
-@pytest.mark.parametrize(('uri', 'path'), [
-    ('/a/b.dae', '/a/b.dae'), ('file:///a/b%20c.dae', '/a/b c.dae'), ('/a/../b.dae', '/b.dae'),
-])
+@pytest.mark.parametrize(
+    ('uri', 'path'),
+    [
+        ('/a/b.dae', '/a/b.dae'),
+        ('file:///a/b%20c.dae', '/a/b c.dae'),
+        ('/a/../b.dae', '/b.dae'),
+    ],
+)
 def test_file_uris_become_paths(uri, path):
     assert file_path(etree.Element('mesh'), uri) == path
 
 
 @pytest.mark.parametrize('scheme', ['', 'file://'])
-@pytest.mark.parametrize(('name', 'written'), [
-    ('a%20b ä#&.dae', 'a%20b ä#&.dae'), ('a b ä#&.dae', 'a%20b%20%C3%A4%23%26.dae'),
-    ('a%20b.dae', 'a%2520b.dae'),
-])
+@pytest.mark.parametrize(
+    ('name', 'written'),
+    [
+        ('a%20b ä#&.dae', 'a%20b ä#&.dae'),
+        ('a b ä#&.dae', 'a%20b%20%C3%A4%23%26.dae'),
+        ('a%20b.dae', 'a%2520b.dae'),
+    ],
+)
 def test_path_is_used_literally_or_decoded_whichever_exists(tmp_path, scheme, name, written):
     (tmp_path / name).touch()
     assert file_path(etree.Element('mesh'), f'{scheme}{tmp_path}/{written}') == f'{tmp_path}/{name}'
@@ -72,10 +82,16 @@ def test_other_schemes_are_rejected_with_a_cure(uri):
         file_path(parse_xml('<mesh/>', 's'), uri)
 
 
-@pytest.mark.parametrize('uri', [
-    'package://bot/../x.dae', 'package://bot/%2e%2e/x.dae', 'package://bot/a/%2E%2E/.%2e/x.dae',
-    'package://bot/..%2fx.dae', 'package://bot%2f../x.dae',
-])
+@pytest.mark.parametrize(
+    'uri',
+    [
+        'package://bot/../x.dae',
+        'package://bot/%2e%2e/x.dae',
+        'package://bot/a/%2E%2E/.%2e/x.dae',
+        'package://bot/..%2fx.dae',
+        'package://bot%2f../x.dae',
+    ],
+)
 def test_uri_out_of_its_package_is_rejected_in_any_spelling(uri):
     with pytest.raises(ModelError, match=r"leads out of package 'bot'; '..' is not accepted"):
         refuse_parent_folders(parse_xml('<mesh/>', 's'), uri)

@@ -117,7 +117,12 @@ def test_a_hook_runs_before_and_after_the_physics_of_the_step_in_which_it_is_due
     for step in (1, 2, 3):
         schedule.run(step, step, lambda _: log.append('physics'))
     assert [entry if isinstance(entry, str) else 'before' for entry in log] == [
-        'physics', 'before', 'physics', 'after', 'physics']
+        'physics',
+        'before',
+        'physics',
+        'after',
+        'physics',
+    ]
 
 
 def test_failing_hook_is_skipped_for_a_while_and_the_others_run(caplog):
@@ -129,7 +134,8 @@ def test_failing_hook_is_skipped_for_a_while_and_the_others_run(caplog):
     assert len(log) == 1 + SUSPENSION
     assert broken.runs == 2
     assert [r.getMessage() for r in caplog.records] == [
-        f'internal fault of Broken; the simulation goes on, without it for {SUSPENSION} steps'] * 2
+        f'internal fault of Broken; the simulation goes on, without it for {SUSPENSION} steps'
+    ] * 2
 
 
 class EveryThird(PreRunPublisher):

@@ -11,8 +11,10 @@ from rosbots_description.sim.plugin_registry.gazebo_libraries import PAGE
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.runtime.world import World
 
-RAY = ('<ray><scan><horizontal><samples>{samples}</samples></horizontal></scan>'
-       '<range><min>{least}</min><max>{most}</max></range>{more}</ray>')
+RAY = (
+    '<ray><scan><horizontal><samples>{samples}</samples></horizontal></scan>'
+    '<range><min>{least}</min><max>{most}</max></range>{more}</ray>'
+)
 
 
 def ray(samples=3, least=0.1, most=5, more=''):
@@ -41,46 +43,74 @@ def test_sensor_without_a_plugin_is_kept_silently(caplog):
 
 def test_sensor_of_an_unsupported_type_is_kept_and_reported(caplog):
     model = load(sensor('', 'sonar'))
-    assert said(caplog) == [('WARNING', "model 'bot', sonar 's' of link 'a': sensors of this type "
-                             f'are not simulated yet; see {PAGE}')]
+    assert said(caplog) == [
+        (
+            'WARNING',
+            "model 'bot', sonar 's' of link 'a': sensors of this type "
+            f'are not simulated yet; see {PAGE}',
+        )
+    ]
     assert model.left_out == ["sonar 's'"]
     assert not model.sensor('s').measures
 
 
-@pytest.mark.parametrize(('library', 'level', 'remark'), [
-    ('libgazebo_ros_prosilica.so', 'WARNING',
-     'libgazebo_ros_prosilica.so is known but not supported yet'),
-    ('libgazebo_ros_laserr.so', 'ERROR', "unknown library 'libgazebo_ros_laserr.so'; "
-     "did you mean 'libgazebo_ros_laser.so'?"),
-    ('libgazebo_ros_diff_drive.so', 'ERROR',
-     'libgazebo_ros_diff_drive.so works only in a <gazebo> or <model>, not where it stands'),
-])
+@pytest.mark.parametrize(
+    ('library', 'level', 'remark'),
+    [
+        (
+            'libgazebo_ros_prosilica.so',
+            'WARNING',
+            'libgazebo_ros_prosilica.so is known but not supported yet',
+        ),
+        (
+            'libgazebo_ros_laserr.so',
+            'ERROR',
+            "unknown library 'libgazebo_ros_laserr.so'; did you mean 'libgazebo_ros_laser.so'?",
+        ),
+        (
+            'libgazebo_ros_diff_drive.so',
+            'ERROR',
+            'libgazebo_ros_diff_drive.so works only in a <gazebo> or <model>, not where it stands',
+        ),
+    ],
+)
 def test_unavailable_plugin_of_a_sensor_is_reported(library, level, remark, caplog):
     model = load(sensor(f'{ray()}<plugin name="p" filename="{library}"/>'))
     assert said(caplog) == [(level, f"model 'bot', ray 's' of link 'a': {remark}; see {PAGE}")]
     assert model.left_out == [f"ray 's' ({library})"]
 
 
-RIGHT_RANGE = ('it must begin at 0 or more and end beyond, at most at 3.40282e+38, which is all '
-               'that a scan can hold')
+RIGHT_RANGE = (
+    'it must begin at 0 or more and end beyond, at most at 3.40282e+38, which is all '
+    'that a scan can hold'
+)
 
 
-@pytest.mark.parametrize(('inside', 'sentence'), [
-    (ray(samples=0), '<samples> is 0; it takes a number from 1 to 1000000'),
-    (ray(samples=1e7), '<samples> is 1e+07; it takes a number from 1 to 1000000'),
-    (ray(samples='many'), "<samples> is 'many'; it takes a finite number"),
-    (ray(samples='nan'), "<samples> is 'nan'; it takes a finite number"),
-    (ray(least=2, most=1), f'<range> is from 2 to 1 m; {RIGHT_RANGE}'),
-    (ray(least=-1), f'<range> is from -1 to 5 m; {RIGHT_RANGE}'),
-    (ray(most='inf'), "<max> is 'inf'; it takes a finite number"),
-    (ray(more='<noise><type>gaussian</type><stddev>nan</stddev></noise>'),
-     "<stddev> is 'nan'; it takes a finite number"),
-    (ray(more='<noise><type>gaussian</type><stddev>-1</stddev></noise>'),
-     '<stddev> of <noise> is -1; it must not be negative'),
-    ('', "a <sensor> of type 'ray' without <ray>"),
-    (ray() + '<update_rate>1e-300</update_rate>',
-     '<update_rate> is 1e-300 Hz; it must be at least 0.001, or 0 for every step'),
-])
+@pytest.mark.parametrize(
+    ('inside', 'sentence'),
+    [
+        (ray(samples=0), '<samples> is 0; it takes a number from 1 to 1000000'),
+        (ray(samples=1e7), '<samples> is 1e+07; it takes a number from 1 to 1000000'),
+        (ray(samples='many'), "<samples> is 'many'; it takes a finite number"),
+        (ray(samples='nan'), "<samples> is 'nan'; it takes a finite number"),
+        (ray(least=2, most=1), f'<range> is from 2 to 1 m; {RIGHT_RANGE}'),
+        (ray(least=-1), f'<range> is from -1 to 5 m; {RIGHT_RANGE}'),
+        (ray(most='inf'), "<max> is 'inf'; it takes a finite number"),
+        (
+            ray(more='<noise><type>gaussian</type><stddev>nan</stddev></noise>'),
+            "<stddev> is 'nan'; it takes a finite number",
+        ),
+        (
+            ray(more='<noise><type>gaussian</type><stddev>-1</stddev></noise>'),
+            '<stddev> of <noise> is -1; it must not be negative',
+        ),
+        ('', "a <sensor> of type 'ray' without <ray>"),
+        (
+            ray() + '<update_rate>1e-300</update_rate>',
+            '<update_rate> is 1e-300 Hz; it must be at least 0.001, or 0 for every step',
+        ),
+    ],
+)
 def test_invalid_sensor_is_left_out_of_the_model(inside, sentence, caplog):
     model = load(sensor(inside))
     ((level, text),) = said(caplog)
@@ -100,8 +130,10 @@ def test_invalid_rate_means_every_step(rate, caplog):
 
 
 def test_sensor_plugin_does_not_run_in_a_model(caplog):
-    text = ('<sdf version="1.6"><model name="m"><link name="a"/>'
-            '<plugin name="p" filename="libgazebo_ros_laser.so"/></model></sdf>')
+    text = (
+        '<sdf version="1.6"><model name="m"><link name="a"/>'
+        '<plugin name="p" filename="libgazebo_ros_laser.so"/></model></sdf>'
+    )
     spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())
     World(make_engine=FakeEngine).spawn(spec, 'bot', IDENTITY)
     assert 'libgazebo_ros_laser.so works only in a <sensor>, not where it stands' in caplog.text

@@ -10,9 +10,11 @@ from rosbots_description.sim.description import LightSpec, Sphere
 from rosbots_description.sim.runtime.shown_world import ShownWorld
 from rosbots_description.sim.runtime.world import World
 
-BALL = urdf_spec('<link name="ball"><inertial><mass value="1"/>'
-                 '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-                 '<visual><geometry><sphere radius="0.5"/></geometry></visual></link>')
+BALL = urdf_spec(
+    '<link name="ball"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    '<visual><geometry><sphere radius="0.5"/></geometry></visual></link>'
+)
 
 
 def names(change):
@@ -54,7 +56,11 @@ def test_only_what_moved_is_told_and_the_clock_always():
     motion = shown.motion(2.0)
     assert motion.poses == {number: Pose((0.0, 2.0, 0.0))}
     assert (motion.time, motion.real_time, motion.iterations, motion.paused) == (
-        0.003, 2.0, 3, False)
+        0.003,
+        2.0,
+        3,
+        False,
+    )
     world.delete('ball')
     shown.change()
     assert shown.motion(3.0).poses == {}

@@ -17,16 +17,22 @@ from rosbots_description.sim.runtime.world import World
 
 PAGE = ROOT / 'doc' / 'howto_add_a_sensor.md'
 ((PATH, SOURCE),) = re.findall(
-    r'```python\n# src/(\S+)\.py\n(.*?)```', PAGE.read_text(encoding='utf-8'), re.DOTALL)
-MODEL = '''<sdf version="1.6"><model name="m"><link name="a"><sensor name="high" type="altimeter">
+    r'```python\n# src/(\S+)\.py\n(.*?)```', PAGE.read_text(encoding='utf-8'), re.DOTALL
+)
+MODEL = """<sdf version="1.6"><model name="m"><link name="a"><sensor name="high" type="altimeter">
   <pose>0 0 0.5 0 0 0</pose><update_rate>100</update_rate>
-  <plugin name="p" filename="libgazebo_ros_altimeter.so"/></sensor></link></model></sdf>'''
+  <plugin name="p" filename="libgazebo_ros_altimeter.so"/></sensor></link></model></sdf>"""
 
 
 def test_the_example_is_lint_clean():
     checked = subprocess.run(
-        ['ruff', 'check', '--stdin-filename', f'src/{PATH}.py', '-'], input=SOURCE,
-        cwd=ROOT, capture_output=True, text=True, check=False)
+        ['ruff', 'check', '--stdin-filename', f'src/{PATH}.py', '-'],
+        input=SOURCE,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 

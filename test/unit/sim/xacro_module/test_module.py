@@ -28,16 +28,25 @@ def test_text_is_indented_without_blank_lines():
         '  <g>\n'
         '    <h/>\n'
         '  </g>\n'
-        '</r>\n')
+        '</r>\n'
+    )
 
 
 def test_it_makes_no_difference_who_imports_xacro_first():
-    program = ('import xacro\n'
-               'from xml.dom import minidom\n'
-               'from rosbots_description.sim.xacro_module import import_xacro\n'
-               'assert import_xacro() is xacro\n'
-               'del minidom._write_data\n'
-               'print(minidom.parseString("<a b=\'1\'/>").documentElement.toxml())\n')
-    done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True,
-                          cwd=LIBRARY.parent, timeout=60, check=False)
+    program = (
+        'import xacro\n'
+        'from xml.dom import minidom\n'
+        'from rosbots_description.sim.xacro_module import import_xacro\n'
+        'assert import_xacro() is xacro\n'
+        'del minidom._write_data\n'
+        'print(minidom.parseString("<a b=\'1\'/>").documentElement.toxml())\n'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', program],
+        capture_output=True,
+        text=True,
+        cwd=LIBRARY.parent,
+        timeout=60,
+        check=False,
+    )
     assert (done.stdout, done.stderr) == ('<a b="1"/>\n', '')

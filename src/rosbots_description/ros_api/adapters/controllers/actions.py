@@ -31,11 +31,17 @@ QUEUE = 50  # as actionlib
 STATUS_PERIOD_NS = NANOSECONDS // 5
 REMEMBERED_NS = 5 * NANOSECONDS  # how long the status of a goal is published after its end
 MOST_REMEMBERED = 100  # goals that have ended
-_NUMBERS = {ACTIVE: GoalStatus.ACTIVE, SUCCEEDED: GoalStatus.SUCCEEDED,
-            ABORTED: GoalStatus.ABORTED, CANCELED: GoalStatus.PREEMPTED,
-            REJECTED: GoalStatus.REJECTED}
-_TOO_LATE = ('This goal handle was canceled by the action server because its timestamp is before '
-             'the timestamp of the last cancel request')
+_NUMBERS = {
+    ACTIVE: GoalStatus.ACTIVE,
+    SUCCEEDED: GoalStatus.SUCCEEDED,
+    ABORTED: GoalStatus.ABORTED,
+    CANCELED: GoalStatus.PREEMPTED,
+    REJECTED: GoalStatus.REJECTED,
+}
+_TOO_LATE = (
+    'This goal handle was canceled by the action server because its timestamp is before '
+    'the timestamp of the last cancel request'
+)
 
 
 @dataclass(frozen=True)
@@ -79,7 +85,8 @@ class ActionServer(Endpoint, Hook):
         """Advertise and subscribe."""
         adapter, name, parts = self.adapter, self.name, self._declared.action()
         goal, result, feedback = (
-            type(getattr(parts, f'action_{part}')) for part in ('goal', 'result', 'feedback'))
+            type(getattr(parts, f'action_{part}')) for part in ('goal', 'result', 'feedback')
+        )
         self._result = adapter.advertise(f'{name}/result', result, QUEUE)
         self._feedback = adapter.advertise(f'{name}/feedback', feedback, QUEUE)
         self._status = adapter.advertise(f'{name}/status', GoalStatusArray, QUEUE, latch=True)
@@ -123,12 +130,12 @@ class ActionServer(Endpoint, Hook):
             self._close(goal, self._declared.action().action_result.result)
             return
         followed = self._declared.follow(self.adapter.plugin, message.goal)
-        goal = self._goals[given.id] = _Goal(
-            GoalStatus(given, GoalStatus.ACTIVE, ''), followed)
+        goal = self._goals[given.id] = _Goal(GoalStatus(given, GoalStatus.ACTIVE, ''), followed)
         if followed.is_active:
             if (convert := self._declared.feedback) is not None:
                 followed.feedback.connect(  # type: ignore[attr-defined]
-                    lambda reading: self._publish(self._feedback, goal, convert(reading)))
+                    lambda reading: self._publish(self._feedback, goal, convert(reading))
+                )
             followed.done.connect(lambda _followed: self._finish(goal))
             self._publish_status()
         else:
@@ -139,9 +146,15 @@ class ActionServer(Endpoint, Hook):
         everything = not message.id and not message.stamp
         for goal in list(self._goals.values()):
             own = goal.status.goal_id
-            if goal.ended_ns is None and goal.followed is not None and (
-                    everything or own.id == message.id
-                    or (message.stamp and own.stamp <= message.stamp)):
+            if (
+                goal.ended_ns is None
+                and goal.followed is not None
+                and (
+                    everything
+                    or own.id == message.id
+                    or (message.stamp and own.stamp <= message.stamp)
+                )
+            ):
                 self._declared.cancel(self.adapter.plugin, goal.followed)
         self._last_cancel = max(self._last_cancel, message.stamp)
 
@@ -157,18 +170,27 @@ class ActionServer(Endpoint, Hook):
 
     def _publish(self, publisher: rospy.Publisher | None, goal: _Goal, content: Message) -> None:
         if publisher is not None:
-            publisher.publish(publisher.data_class(
-                Header(stamp=stamp(self._world.clock.now_ns)), goal.status, content))
+            publisher.publish(
+                publisher.data_class(
+                    Header(stamp=stamp(self._world.clock.now_ns)), goal.status, content
+                )
+            )
 
     def _publish_status(self) -> None:
         clock, publisher = self._world.clock, self._status
         now_ns = clock.now_ns
         self._forget(now_ns)
         if publisher is not None:
-            publisher.publish(GoalStatusArray(
-                Header(stamp=stamp(now_ns)), [one.status for one in self._goals.values()]))
-        self.due = (clock.first_step_after(now_ns + STATUS_PERIOD_NS - 1)
-                    if has_subscribers(publisher) else NEVER)
+            publisher.publish(
+                GoalStatusArray(
+                    Header(stamp=stamp(now_ns)), [one.status for one in self._goals.values()]
+                )
+            )
+        self.due = (
+            clock.first_step_after(now_ns + STATUS_PERIOD_NS - 1)
+            if has_subscribers(publisher)
+            else NEVER
+        )
 
     def _forget(self, now_ns: int) -> None:
         """Drop goals that ended long ago, or before a reset of the time."""

@@ -38,5 +38,7 @@ def result(goal: GripperGoal) -> GripperCommandResult:
 
 connects_controller(
     GripperActionController,
-    Acts(GripperActionController.topic_names['follow'], GripperCommandAction, follow, cancel,
-         result))
+    Acts(
+        GripperActionController.topic_names['follow'], GripperCommandAction, follow, cancel, result
+    ),
+)

@@ -59,8 +59,7 @@ class ControlEndpoint(Endpoint):
         """Subscribe to the emergency stop, and begin to wait for the description."""
         self.adapter.on_close(self._closed.set)
         if self._plugin.e_stop_topic:
-            self._open_emergency_stop(
-                topic_name(self._plugin.namespace, self._plugin.e_stop_topic))
+            self._open_emergency_stop(topic_name(self._plugin.namespace, self._plugin.e_stop_topic))
         threading.Thread(target=self._configure, name='robot_description', daemon=True).start()
 
     def refresh(self) -> None:
@@ -76,13 +75,17 @@ class ControlEndpoint(Endpoint):
 
     def _open_emergency_stop(self, topic: str) -> None:
         if not is_valid_name(topic):
-            logger.error("%s: <eStopTopic> is '%s', which is no name of a topic",
-                         where(self._plugin), self._plugin.e_stop_topic)
+            logger.error(
+                "%s: <eStopTopic> is '%s', which is no name of a topic",
+                where(self._plugin),
+                self._plugin.e_stop_topic,
+            )
             return
 
         def receive(message: Bool) -> None:
             self.adapter.server.loop.post(
-                lambda: setattr(self._plugin, 'emergency_stop', message.data))
+                lambda: setattr(self._plugin, 'emergency_stop', message.data)
+            )
 
         self.adapter.subscribe(topic, Bool, receive, 1)
 
@@ -101,13 +104,15 @@ class ControlEndpoint(Endpoint):
             if text is None:
                 return
             control = load_robot_control(text)
-            settings = {key: read_parameter(topic_name(plugin.namespace, key), {})
-                        for key in SETTINGS}
+            settings = {
+                key: read_parameter(topic_name(plugin.namespace, key), {}) for key in SETTINGS
+            }
         except rospy.ROSInterruptException:
             return
         except SimError as error:
-            logger.error('Error parsing URDF in gazebo_ros_control plugin, plugin not active: %s',
-                         error)
+            logger.error(
+                'Error parsing URDF in gazebo_ros_control plugin, plugin not active: %s', error
+            )
             return
 
         def configure() -> None:
@@ -130,8 +135,11 @@ class ControlEndpoint(Endpoint):
             name = search_parameter(plugin.namespace, plugin.robot_param)
             if not told:
                 told = True
-                logger.info('gazebo_ros_control plugin is waiting for model URDF in parameter '
-                            '[%s] on the ROS param server.', name or plugin.robot_param)
+                logger.info(
+                    'gazebo_ros_control plugin is waiting for model URDF in parameter '
+                    '[%s] on the ROS param server.',
+                    name or plugin.robot_param,
+                )
             text = None if name is None else read_parameter(name)
             if isinstance(text, str) and text:
                 return text
@@ -150,7 +158,10 @@ class ControlEndpoint(Endpoint):
         except rospy.ServiceException:
             logger.warning(
                 '%s: the services of %s are those of another robot; a <robotNamespace> of its '
-                'own would give this one its own', where(self._plugin), self.name)
+                'own would give this one its own',
+                where(self._plugin),
+                self.name,
+            )
         else:
             self.adapter.on_close(services.close)
         open_gains(self.adapter, self._plugin.manager.robot.pids)

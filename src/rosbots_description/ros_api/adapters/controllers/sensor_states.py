@@ -40,11 +40,17 @@ class SensorTopics(Endpoint):
         self._topics: list[PublishedTopic] = []
         for sensor, frame in controller.frames.items():
             if not is_valid_name(topic_name(controller.namespace, sensor)):
-                logger.error("%s: no topic for the sensor '%s', since ROS has no such names",
-                             where(controller), sensor)
+                logger.error(
+                    "%s: no topic for the sensor '%s', since ROS has no such names",
+                    where(controller),
+                    sensor,
+                )
                 continue
-            declared = _imu(sensor, frame) if controller.interface == IMU else Publishes(
-                sensor, sensor, WrenchStamped, convert=wrench_message, frame=frame)
+            declared = (
+                _imu(sensor, frame)
+                if controller.interface == IMU
+                else Publishes(sensor, sensor, WrenchStamped, convert=wrench_message, frame=frame)
+            )
             self._topics.append(PublishedTopic(adapter, declared))
 
     def open(self) -> None:

@@ -74,13 +74,23 @@ class ManagerServices:
             SwitchController: self._switch,
             ReloadControllerLibraries: self._reload,
         }
-        names = ('list_controllers', 'list_controller_types', 'load_controller',
-                 'unload_controller', 'switch_controller', 'reload_controller_libraries')
+        names = (
+            'list_controllers',
+            'list_controller_types',
+            'load_controller',
+            'unload_controller',
+            'switch_controller',
+            'reload_controller_libraries',
+        )
         try:
             for name, (kind, handler) in zip(names, handlers.items(), strict=True):
-                self._services.append(rospy.Service(
-                    topic_name(self._namespace, f'controller_manager/{name}'), kind,
-                    self._guarded(handler)))
+                self._services.append(
+                    rospy.Service(
+                        topic_name(self._namespace, f'controller_manager/{name}'),
+                        kind,
+                        self._guarded(handler),
+                    )
+                )
         except rospy.ServiceException:
             self.close()
             raise
@@ -116,16 +126,28 @@ class ManagerServices:
                 logger.error('%s', sentence)
             return False
         if not self._server.registrar.wait(REGISTRATION):
-            logger.warning('the ROS master has not registered all topics of controllers within '
-                           '%g s; it will be done later', REGISTRATION)
+            logger.warning(
+                'the ROS master has not registered all topics of controllers within '
+                '%g s; it will be done later',
+                REGISTRATION,
+            )
         return True
 
     def _list(self, _request: ListControllersRequest) -> ListControllersResponse:
-        return ListControllersResponse([
-            ControllerState(one.name, one.state, one.type, [
-                HardwareInterfaceResources(interface, list(joints))
-                for interface, joints in one.claimed])
-            for one in self._call(lambda manager: manager.list())])
+        return ListControllersResponse(
+            [
+                ControllerState(
+                    one.name,
+                    one.state,
+                    one.type,
+                    [
+                        HardwareInterfaceResources(interface, list(joints))
+                        for interface, joints in one.claimed
+                    ],
+                )
+                for one in self._call(lambda manager: manager.list())
+            ]
+        )
 
     def _types(self, _request: ListControllerTypesRequest) -> ListControllerTypesResponse:
         types = self._call(lambda manager: manager.types())
@@ -135,15 +157,20 @@ class ManagerServices:
         name = request.name
         own = topic_name(self._namespace, name)
         if not is_valid_name(own):
-            logger.error("Exception thrown while constructing nodehandle for controller with name "
-                         "'%s':\n%s is not a valid name", name, own)
+            logger.error(
+                'Exception thrown while constructing nodehandle for controller with name '
+                "'%s':\n%s is not a valid name",
+                name,
+                own,
+            )
             return LoadControllerResponse(False)
         found = read_parameter(own, {})
         parameters = found if isinstance(found, Mapping) else {}
         kind = parameters.get('type')
         type_name = kind if isinstance(kind, str) else ''
         return LoadControllerResponse(
-            self._try(lambda manager: manager.load(name, type_name, parameters)))
+            self._try(lambda manager: manager.load(name, type_name, parameters))
+        )
 
     def _unload(self, request: UnloadControllerRequest) -> UnloadControllerResponse:
         return UnloadControllerResponse(self._try(lambda manager: manager.unload(request.name)))
@@ -154,9 +181,17 @@ class ManagerServices:
             logger.warning(
                 'Controller Manager: To switch controllers you need to specify a strictness level '
                 'of controller_manager_msgs::SwitchController::STRICT (%d) or ::BEST_EFFORT (%d). '
-                'Defaulting to ::BEST_EFFORT.', STRICT, BEST_EFFORT)
-        return SwitchControllerResponse(self._try(lambda manager: manager.switch(
-            request.start_controllers, request.stop_controllers, strictness == STRICT)))
+                'Defaulting to ::BEST_EFFORT.',
+                STRICT,
+                BEST_EFFORT,
+            )
+        return SwitchControllerResponse(
+            self._try(
+                lambda manager: manager.switch(
+                    request.start_controllers, request.stop_controllers, strictness == STRICT
+                )
+            )
+        )
 
     def _reload(
         self, request: ReloadControllerLibrariesRequest
@@ -164,8 +199,11 @@ class ManagerServices:
         """Unload all controllers if asked to; the code of controllers itself stays as it is."""
         names = [one.name for one in self._call(lambda manager: manager.list())]
         if names and not request.force_kill:
-            logger.error('Controller manager: Cannot reload controller libraries because there '
-                         'are still %d controllers running', len(names))
+            logger.error(
+                'Controller manager: Cannot reload controller libraries because there '
+                'are still %d controllers running',
+                len(names),
+            )
             return ReloadControllerLibrariesResponse(False)
 
         def kill(manager: ControllerManager) -> None:

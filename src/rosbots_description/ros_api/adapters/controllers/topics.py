@@ -88,8 +88,11 @@ def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
         try:
             server = GainsReconfigure(pid, name, adapter.server.loop.post)
         except rospy.ServiceException:
-            logger.warning('%s: there is a server of dynamic_reconfigure in %s already',
-                           where(adapter.plugin), name)
+            logger.warning(
+                '%s: there is a server of dynamic_reconfigure in %s already',
+                where(adapter.plugin),
+                name,
+            )
         else:
             adapter.on_close(server.close)
 
@@ -115,17 +118,29 @@ def pid_state_message(state: JointPidState) -> JointControllerState:
     """Return the state of a PID as a message; as upstream its clamp is that of i_clamp_max."""
     gains = state.gains
     return JointControllerState(
-        set_point=state.set_point, process_value=state.process_value,
-        process_value_dot=state.process_value_dot, error=state.error, time_step=state.time_step,
-        command=state.command, p=gains.p, i=gains.i, d=gains.d, i_clamp=gains.i_max,
-        antiwindup=gains.antiwindup)
+        set_point=state.set_point,
+        process_value=state.process_value,
+        process_value_dot=state.process_value_dot,
+        error=state.error,
+        time_step=state.time_step,
+        command=state.command,
+        p=gains.p,
+        i=gains.i,
+        d=gains.d,
+        i_clamp=gains.i_max,
+        antiwindup=gains.antiwindup,
+    )
 
 
 def steering_message(steering: AxleSteering) -> FourWheelSteeringStamped:
     """Return the measured steering of both axles as a message."""
-    return FourWheelSteeringStamped(data=FourWheelSteering(
-        speed=steering.speed, front_steering_angle=steering.front_angle,
-        rear_steering_angle=steering.rear_angle))
+    return FourWheelSteeringStamped(
+        data=FourWheelSteering(
+            speed=steering.speed,
+            front_steering_angle=steering.front_angle,
+            rear_steering_angle=steering.rear_angle,
+        )
+    )
 
 
 def odometry_pack(adapter: Adapter) -> Pack:
@@ -150,7 +165,8 @@ def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
     from ...reconfigure.diff_drive import DiffDriveReconfigure
 
     return DiffDriveReconfigure(
-        cast(DiffDriveController, adapter.plugin), name, adapter.server.loop.post).close
+        cast(DiffDriveController, adapter.plugin), name, adapter.server.loop.post
+    ).close
 
 
 GROUP = Subscribes('command', Float64MultiArray, 'command', read_data)
@@ -158,20 +174,40 @@ SINGLE = Subscribes('command', Float64, 'command', read_data)
 STATE = Publishes('state', 'state', JointControllerState, convert=pid_state_message, frame='')
 COMMAND, SIDEWAYS = (
     Subscribes(DriveController.topic_names['command'], Twist, 'command', finite(*fields))
-    for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y')))
+    for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y'))
+)
 ODOMETRY = (
-    Publishes('odometry', DriveController.topic_names['odometry'], Odometry, pack=odometry_pack,
-              queue=100),
-    Publishes('odometry_transform', DriveController.topic_names['odometry_transform'], TFMessage,
-              pack=transform_pack, queue=100),
-    Publishes('limited_command', DriveController.topic_names['limited_command'], TwistStamped,
-              convert=twist_message, frame='', queue=100),
+    Publishes(
+        'odometry', DriveController.topic_names['odometry'], Odometry, pack=odometry_pack, queue=100
+    ),
+    Publishes(
+        'odometry_transform',
+        DriveController.topic_names['odometry_transform'],
+        TFMessage,
+        pack=transform_pack,
+        queue=100,
+    ),
+    Publishes(
+        'limited_command',
+        DriveController.topic_names['limited_command'],
+        TwistStamped,
+        convert=twist_message,
+        frame='',
+        queue=100,
+    ),
 )
 
 connects_controller(Controller)
-connects_controller(JointStateController, Publishes(
-    'joint_states', JointStateController.topic_names['joint_states'], JointState,
-    pack=JointStatesPack, queue=1000))
+connects_controller(
+    JointStateController,
+    Publishes(
+        'joint_states',
+        JointStateController.topic_names['joint_states'],
+        JointState,
+        pack=JointStatesPack,
+        queue=1000,
+    ),
+)
 connects_controller(JointCommandController, SINGLE)
 connects_controller(JointPositionController, SINGLE, STATE)
 connects_controller(JointVelocityController, SINGLE, STATE)
@@ -179,14 +215,36 @@ connects_controller(JointGroupCommandController, GROUP)
 connects_controller(JointGroupPositionController, GROUP)
 connects_controller(DriveController, COMMAND, *ODOMETRY)
 connects_controller(
-    DiffDriveController, COMMAND, *ODOMETRY, Offers('', offer_settings),
-    Publishes('wheel_states', DiffDriveController.topic_names['wheel_states'],
-              JointTrajectoryControllerState, frame='', queue=100,
-              convert=lambda state: fill_state(JointTrajectoryControllerState(), state)))
+    DiffDriveController,
+    COMMAND,
+    *ODOMETRY,
+    Offers('', offer_settings),
+    Publishes(
+        'wheel_states',
+        DiffDriveController.topic_names['wheel_states'],
+        JointTrajectoryControllerState,
+        frame='',
+        queue=100,
+        convert=lambda state: fill_state(JointTrajectoryControllerState(), state),
+    ),
+)
 connects_controller(MecanumDriveController, SIDEWAYS, *ODOMETRY)
 connects_controller(
-    FourWheelSteeringController, COMMAND, *ODOMETRY,
-    Subscribes(FourWheelSteeringController.topic_names['steer'], FourWheelSteering, 'steer',
-               finite('speed', 'front_steering_angle', 'rear_steering_angle')),
-    Publishes('steering', FourWheelSteeringController.topic_names['steering'],
-              FourWheelSteeringStamped, convert=steering_message, frame='', queue=100))
+    FourWheelSteeringController,
+    COMMAND,
+    *ODOMETRY,
+    Subscribes(
+        FourWheelSteeringController.topic_names['steer'],
+        FourWheelSteering,
+        'steer',
+        finite('speed', 'front_steering_angle', 'rear_steering_angle'),
+    ),
+    Publishes(
+        'steering',
+        FourWheelSteeringController.topic_names['steering'],
+        FourWheelSteeringStamped,
+        convert=steering_message,
+        frame='',
+        queue=100,
+    ),
+)

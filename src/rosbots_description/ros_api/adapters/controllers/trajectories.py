@@ -52,10 +52,19 @@ _TOPICS = JointTrajectoryController.topic_names
 
 def read_trajectory(message: JointTrajectory) -> Trajectory:
     """Return the trajectory of a message."""
-    return Trajectory(tuple(message.joint_names), [
-        TrajectoryPoint(point.positions, point.velocities, point.accelerations,
-                        point.time_from_start.to_sec())
-        for point in message.points], message.header.stamp.to_nsec())
+    return Trajectory(
+        tuple(message.joint_names),
+        [
+            TrajectoryPoint(
+                point.positions,
+                point.velocities,
+                point.accelerations,
+                point.time_from_start.to_sec(),
+            )
+            for point in message.points
+        ],
+        message.header.stamp.to_nsec(),
+    )
 
 
 def read_tolerances(messages: Sequence[JointTolerance]) -> dict[str, Tolerance]:
@@ -65,9 +74,14 @@ def read_tolerances(messages: Sequence[JointTolerance]) -> dict[str, Tolerance]:
 
 def follow(controller: JointTrajectoryController, goal: FollowJointTrajectoryGoal) -> FollowedGoal:
     """Pass a goal on to the controller."""
-    return controller.follow(TrajectoryGoal(
-        read_trajectory(goal.trajectory), read_tolerances(goal.path_tolerance),
-        read_tolerances(goal.goal_tolerance), goal.goal_time_tolerance.to_sec()))
+    return controller.follow(
+        TrajectoryGoal(
+            read_trajectory(goal.trajectory),
+            read_tolerances(goal.path_tolerance),
+            read_tolerances(goal.goal_tolerance),
+            goal.goal_time_tolerance.to_sec(),
+        )
+    )
 
 
 def cancel(controller: JointTrajectoryController, goal: FollowedGoal) -> None:
@@ -90,8 +104,7 @@ def offer_query(adapter: Adapter, name: str) -> Callable[[], None]:
         except SimError as error:
             logger.error('%s', error)
             raise rospy.ServiceException(str(error)) from None
-        return QueryTrajectoryStateResponse(
-            list(controller.joint_names), *map(list, point[:3]))
+        return QueryTrajectoryStateResponse(list(controller.joint_names), *map(list, point[:3]))
 
     shutdown: Callable[[], None] = rospy.Service(name, QueryTrajectoryState, answer).shutdown
     return shutdown
@@ -104,8 +117,20 @@ def _play_arguments(message: JointTrajectory) -> tuple[Any, ...]:
 connects_controller(
     JointTrajectoryController,
     Subscribes(_TOPICS['play'], JointTrajectory, 'play', _play_arguments),
-    Publishes('state', _TOPICS['state'], JointTrajectoryControllerState,
-              convert=lambda state: fill_state(JointTrajectoryControllerState(), state), frame=''),
-    Acts(_TOPICS['follow'], FollowJointTrajectoryAction, follow, cancel, result,
-         lambda state: fill_state(FollowJointTrajectoryFeedback(), state)),
-    Offers('query_state', offer_query))
+    Publishes(
+        'state',
+        _TOPICS['state'],
+        JointTrajectoryControllerState,
+        convert=lambda state: fill_state(JointTrajectoryControllerState(), state),
+        frame='',
+    ),
+    Acts(
+        _TOPICS['follow'],
+        FollowJointTrajectoryAction,
+        follow,
+        cancel,
+        result,
+        lambda state: fill_state(FollowJointTrajectoryFeedback(), state),
+    ),
+    Offers('query_state', offer_query),
+)

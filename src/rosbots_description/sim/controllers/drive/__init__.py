@@ -7,6 +7,10 @@ from .four_wheel_steering import FourWheelSteering, FourWheelSteeringController
 from .mecanum_drive import MecanumDriveController
 
 __all__ = [
-    'AckermannSteeringController', 'DiffDriveController', 'DriveController', 'FourWheelSteering',
-    'FourWheelSteeringController', 'MecanumDriveController',
+    'AckermannSteeringController',
+    'DiffDriveController',
+    'DriveController',
+    'FourWheelSteering',
+    'FourWheelSteeringController',
+    'MecanumDriveController',
 ]

@@ -19,8 +19,10 @@ class AckermannSteeringController(DriveController):
     def load_geometry(self) -> None:
         """Read names and sizes; what is not given is that of the URDF."""
         read = self.params.read
-        self._names = (read('rear_wheel', 'rear_wheel_joint'),
-                       read('front_steer', 'front_steer_joint'))
+        self._names = (
+            read('rear_wheel', 'rear_wheel_joint'),
+            read('front_steer', 'front_steer_joint'),
+        )
         wheelbase = self.length('wheel_separation_h', lambda: self.distance(*self._names))
         # As upstream, the multipliers act on odometry only.
         self._wheelbase = wheelbase * self.multiplier('wheel_separation_h_multiplier')

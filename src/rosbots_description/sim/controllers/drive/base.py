@@ -35,8 +35,11 @@ class DriveController(Controller):
     """
 
     topic_names: Mapping[str, str] = {
-        'command': 'cmd_vel', 'odometry': 'odom', 'odometry_transform': '/tf',
-        'limited_command': 'cmd_vel_out'}
+        'command': 'cmd_vel',
+        'odometry': 'odom',
+        'odometry_transform': '/tf',
+        'limited_command': 'cmd_vel_out',
+    }
 
     # Forward [m/s], yaw rate [rad/s] and to the left [m/s]: the command, and the last two of them
     # as limited.
@@ -57,14 +60,17 @@ class DriveController(Controller):
         read('base_frame_id', 'base_link')
         read('odom_frame_id', 'odom')
         self.enable_odom_tf = read('enable_odom_tf', True)
-        self._limiters = tuple(SpeedLimiter.from_parameters(self.params.section(section))
-                               for section in ('linear/x', 'angular/z', 'linear/y'))
+        self._limiters = tuple(
+            SpeedLimiter.from_parameters(self.params.section(section))
+            for section in ('linear/x', 'angular/z', 'linear/y')
+        )
         self.pose_variances = self._variances('pose_covariance_diagonal')
         self.twist_variances = self._variances('twist_covariance_diagonal')
         self.odometry: Output[Odometry] = self.output('odometry')
         self.odometry_transform: Output[FrameTransform] = self.output('odometry_transform')
         self.limited_command: Output[Twist] | None = (
-            self.output('limited_command') if read('publish_cmd', False) else None)
+            self.output('limited_command') if read('publish_cmd', False) else None
+        )
         self.load_joints()
         self._brake()
 
@@ -136,8 +142,10 @@ class DriveController(Controller):
             self.report(self.planar.reading)
         self.wanted = wanted = self._command if self.is_fresh(now_ns) else _AT_REST
         last, before = self._last
-        x, z, y = (limiter.limit(speed, one, other, period) for limiter, speed, one, other in zip(
-            self._limiters, wanted, last, before, strict=True))
+        x, z, y = (
+            limiter.limit(speed, one, other, period)
+            for limiter, speed, one, other in zip(self._limiters, wanted, last, before, strict=True)
+        )
         self._last = ((x, z, y), last)
         if self.limited_command is not None and self.limited_command.wanted:
             self.limited_command.send(Twist((x, y, 0.0), (0.0, 0.0, z)))
@@ -157,14 +165,20 @@ class DriveController(Controller):
             self.odometry.send(reading)
         if self.odometry_transform.wanted and self.enable_odom_tf:
             values = self.params.values
-            self.odometry_transform.send(FrameTransform(
-                str(values['odom_frame_id']), str(values['base_frame_id']), reading.pose))
+            self.odometry_transform.send(
+                FrameTransform(
+                    str(values['odom_frame_id']), str(values['base_frame_id']), reading.pose
+                )
+            )
 
     def _variances(self, path: str) -> tuple[float, ...]:
         """Return six variances; zeros, with an error, if the parameter has no such list."""
         given = self.params.find(path)
-        if isinstance(given, list | tuple) and len(given) == _DIAGONAL and all(
-                isinstance(one, int | float) for one in given):
+        if (
+            isinstance(given, list | tuple)
+            and len(given) == _DIAGONAL
+            and all(isinstance(one, int | float) for one in given)
+        ):
             return tuple(map(float, given))
         logger.error("Controller '%s': %s must list six numbers; zeros are used", self.name, path)
         return (0.0,) * _DIAGONAL
@@ -182,7 +196,8 @@ class DriveController(Controller):
             return [given]
         if not isinstance(given, list | tuple):
             raise ControllerError(
-                f"Wheel param '{path}' is neither a list of strings nor a string.")
+                f"Wheel param '{path}' is neither a list of strings nor a string."
+            )
         if not given:
             raise ControllerError(f"Wheel param '{path}' is an empty list")
         for number, one in enumerate(given):
@@ -200,8 +215,10 @@ class DriveController(Controller):
         value = find() if given is None else given
         if not _SHORTEST < value < _LONGEST:
             raise ControllerError(
-                f'{path} is {value:g} m; it must be above 0' if value < _LONGEST
-                else f'{path} is {value:g} m; it must be below {_LONGEST:g}')
+                f'{path} is {value:g} m; it must be above 0'
+                if value < _LONGEST
+                else f'{path} is {value:g} m; it must be below {_LONGEST:g}'
+            )
         return value
 
     def multiplier(self, path: str, default: float = 1.0) -> float:
@@ -229,11 +246,14 @@ class DriveController(Controller):
         if not link.collisions:
             raise ControllerError(
                 f'Link {link.name} does not have collision description. Add collision description '
-                'for link to urdf.', failed)
+                'for link to urdf.',
+                failed,
+            )
         geometry = link.collisions[0].geometry
         if not isinstance(geometry, Cylinder | Sphere):
             raise ControllerError(
-                f'Wheel link {link.name} is NOT modeled as a cylinder or sphere!', failed)
+                f'Wheel link {link.name} is NOT modeled as a cylinder or sphere!', failed
+            )
         return geometry.radius
 
     def joint_distance(self, one: str, other: str) -> float:

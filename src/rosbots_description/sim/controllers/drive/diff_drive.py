@@ -24,14 +24,17 @@ class DiffDriveController(DriveController):
     """
 
     topic_names: Mapping[str, str] = {
-        **DriveController.topic_names, 'wheel_states': 'wheel_joint_controller_state'}
+        **DriveController.topic_names,
+        'wheel_states': 'wheel_joint_controller_state',
+    }
     wheel_states: Output[TrajectoryState] | None = None
 
     def load_geometry(self) -> None:
         """Read names and sizes of the wheels; what is not given is that of the URDF."""
         read = self.params.read
         self._left_names, self._right_names = (
-            self.wheel_names(path) for path in ('left_wheel', 'right_wheel'))
+            self.wheel_names(path) for path in ('left_wheel', 'right_wheel')
+        )
         left, right = len(self._left_names), len(self._right_names)
         if left != right:
             raise ControllerError(f'#left wheels ({left}) != #right wheels ({right}).')
@@ -40,13 +43,12 @@ class DiffDriveController(DriveController):
         if self.params.number('wheel_radius_multiplier') is not None:
             paths = ['wheel_radius_multiplier'] * 2
         self.left_wheel_radius_multiplier, self.right_wheel_radius_multiplier = map(
-            self.multiplier, paths)
+            self.multiplier, paths
+        )
         names = self._left_names[0], self._right_names[0]
         self._reports_wheels = read('publish_wheel_joint_controller_state', False)
-        self.wheel_separation = self.length(
-            'wheel_separation', lambda: self.distance(*names))
-        self.wheel_radius_given = self.length(
-            'wheel_radius', lambda: self.wheel_radius(names[0]))
+        self.wheel_separation = self.length('wheel_separation', lambda: self.distance(*names))
+        self.wheel_radius_given = self.length('wheel_radius', lambda: self.wheel_radius(names[0]))
 
     def load_joints(self) -> None:
         """Find the wheels."""
@@ -65,15 +67,18 @@ class DiffDriveController(DriveController):
 
     def _measure(self) -> tuple[float, float]:
         """Return the mean distances of the rims [m], left and right."""
-        left, right = (sum(one.position for one in side) / len(side)
-                       for side in (self.left, self.right))
+        left, right = (
+            sum(one.position for one in side) / len(side) for side in (self.left, self.right)
+        )
         return left * self._radii[0], right * self._radii[1]
 
     @property
     def _radii(self) -> tuple[float, float]:
         radius = self.wheel_radius_given
-        return (radius * self.left_wheel_radius_multiplier,
-                radius * self.right_wheel_radius_multiplier)
+        return (
+            radius * self.left_wheel_radius_multiplier,
+            radius * self.right_wheel_radius_multiplier,
+        )
 
     @property
     def _separation(self) -> float:
@@ -107,26 +112,39 @@ class DiffDriveController(DriveController):
         forward, yaw_rate, _ = self.wanted
         half = yaw_rate * self._separation / 2.0
         left, right = self._radii
-        speeds = ([(forward - half) / left] * len(self.left)
-                  + [(forward + half) / right] * len(self.right))
-        before, self._desired = self._desired, [
-            (position + speed * period, speed)
-            for (position, _), speed in zip(self._desired, speeds, strict=True)]
+        speeds = [(forward - half) / left] * len(self.left) + [(forward + half) / right] * len(
+            self.right
+        )
+        before, self._desired = (
+            self._desired,
+            [
+                (position + speed * period, speed)
+                for (position, _), speed in zip(self._desired, speeds, strict=True)
+            ],
+        )
         if output.wanted:
             output.send(self._wheel_state(before, period))
         self._last_speeds = [wheel.velocity for wheel in self._wheels]
 
-    def _wheel_state(
-        self, before: Sequence[tuple[float, float]], period: float
-    ) -> TrajectoryState:
-        desired = [(position, speed, (speed - last) * period, math.nan)
-                   for (position, speed), (_, last) in zip(self._desired, before, strict=True)]
-        actual = [(wheel.position, wheel.velocity, (wheel.velocity - last) / period, wheel.effort)
-                  for wheel, last in zip(self._wheels, self._last_speeds, strict=True)]
-        errors = [(p - q, v - w, a - b, e - f)
-                  for (p, v, a, e), (q, w, b, f) in zip(desired, actual, strict=True)]
-        return TrajectoryState(tuple(wheel.name for wheel in self._wheels),
-                               _point(desired), _point(actual), _point(errors))
+    def _wheel_state(self, before: Sequence[tuple[float, float]], period: float) -> TrajectoryState:
+        desired = [
+            (position, speed, (speed - last) * period, math.nan)
+            for (position, speed), (_, last) in zip(self._desired, before, strict=True)
+        ]
+        actual = [
+            (wheel.position, wheel.velocity, (wheel.velocity - last) / period, wheel.effort)
+            for wheel, last in zip(self._wheels, self._last_speeds, strict=True)
+        ]
+        errors = [
+            (p - q, v - w, a - b, e - f)
+            for (p, v, a, e), (q, w, b, f) in zip(desired, actual, strict=True)
+        ]
+        return TrajectoryState(
+            tuple(wheel.name for wheel in self._wheels),
+            _point(desired),
+            _point(actual),
+            _point(errors),
+        )
 
 
 def _point(rows: Sequence[tuple[float, float, float, float]]) -> TrajectoryPoint:

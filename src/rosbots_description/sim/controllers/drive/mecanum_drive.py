@@ -10,8 +10,12 @@ from ..registry import register_controller
 from .base import DriveController
 
 # Signs of the velocity to the left and of the yaw rate in the speed of each wheel.
-_WHEELS = (('front_left', -1.0, -1.0), ('back_left', 1.0, -1.0), ('back_right', -1.0, 1.0),
-           ('front_right', 1.0, 1.0))
+_WHEELS = (
+    ('front_left', -1.0, -1.0),
+    ('back_left', 1.0, -1.0),
+    ('back_right', -1.0, 1.0),
+    ('front_right', 1.0, 1.0),
+)
 
 
 @register_controller('mecanum_drive_controller/MecanumDriveController', VELOCITY)
@@ -26,15 +30,16 @@ class MecanumDriveController(DriveController):
             if name is None:
                 raise ControllerError(f"Couldn't retrieve {place}_wheel_joint from param server.")
             self._names.append(name)
-        self.radius = self.length(
-            'wheels_radius', lambda: self.wheel_radius(self._names[0]))
+        self.radius = self.length('wheels_radius', lambda: self.wheel_radius(self._names[0]))
         self.arm = self.length('wheels_k', self._find_arm)
 
     def _find_arm(self) -> float:
         """Return half of the wheelbase and of the track together [m]."""
         front_left, back_left, _, front_right = self._names
-        return (self.joint_distance(front_left, back_left)
-                + self.joint_distance(front_left, front_right)) / 2.0
+        return (
+            self.joint_distance(front_left, back_left)
+            + self.joint_distance(front_left, front_right)
+        ) / 2.0
 
     def load_joints(self) -> None:
         """Find the wheels."""
@@ -51,14 +56,16 @@ class MecanumDriveController(DriveController):
         ways = [now - then for now, then in zip(self._ways, before, strict=True)]
         left, turn = (
             sum(way * signs[which] for way, (_, *signs) in zip(ways, _WHEELS, strict=True)) / 4.0
-            for which in (0, 1))
+            for which in (0, 1)
+        )
         self.planar.advance(sum(ways) / 4.0, turn / self.arm, now_ns, left)
 
     def drive(self, linear_x: float, angular_z: float, linear_y: float) -> None:
         """Set the wheels' speeds."""
         for wheel, (_, sideways, around) in zip(self.wheels, _WHEELS, strict=True):
             wheel.command = (
-                linear_x + sideways * linear_y + around * self.arm * angular_z) / self.radius
+                linear_x + sideways * linear_y + around * self.arm * angular_z
+            ) / self.radius
 
     def stand(self) -> None:
         """Stop the wheels."""

@@ -51,8 +51,10 @@ class PlanarOdometry:
     def reading(self) -> Odometry:
         """Return pose and velocity."""
         vx, vy, yaw_rate = self.velocity
-        return Odometry(Pose((self.x, self.y, 0.0), from_rpy(0.0, 0.0, self.heading)),
-                        Twist((vx, vy, 0.0), (0.0, 0.0, yaw_rate)))
+        return Odometry(
+            Pose((self.x, self.y, 0.0), from_rpy(0.0, 0.0, self.heading)),
+            Twist((vx, vy, 0.0), (0.0, 0.0, yaw_rate)),
+        )
 
     def _integrate(self, forward: float, left: float, turn: float) -> None:
         before = self.heading

@@ -59,7 +59,8 @@ def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
     poses = _poses_in_model(tree, order)
     kept = [name for name in order if name in members]
     joints = tuple(
-        _reattach(tree.joint_to[name], homes) for name in kept
+        _reattach(tree.joint_to[name], homes)
+        for name in kept
         if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
     )
     return Reduction(
@@ -153,8 +154,7 @@ def _merge_link(
         link, frame = tree.links[member], homes[member][1]
         collisions += [_move(shape, frame, member) for shape in link.spec.collisions]
         visuals += [_move(shape, frame, member) for shape in link.spec.visuals]
-        sensors += [move_sensor(sensor, frame, poses[name], poses)
-                    for sensor in link.spec.sensors]
+        sensors += [move_sensor(sensor, frame, poses[name], poses) for sensor in link.spec.sensors]
         parts += [move_part(part, frame) for part in link.spec.parts]
         inertial = link.spec.inertial
         if inertial is not None and inertial.mass > 0.0:
@@ -193,8 +193,11 @@ def _named(shapes: Sequence[Shape], parent: str, suffix: str) -> tuple[Shape, ..
 def _conflicts(tree: KinematicTree, members: Mapping[str, Sequence[str]]) -> list[str]:
     """Return the reduced links whose flags change those of their parent."""
     return [
-        member for parent, names in members.items() for member in names
-        if member != parent and any(
+        member
+        for parent, names in members.items()
+        for member in names
+        if member != parent
+        and any(
             getattr(tree.links[parent].spec, key) != value
             for key, value in tree.links[member].flags.items()
         )
@@ -217,6 +220,6 @@ def _nothing_left(name: str, element: etree._Element) -> ModelError:
         return fault(element, 'the model has no link but the world; add a link with a mass')
     return fault(
         element,
-        "it has no mass, so no link of the model can be simulated; give it an <inertial> with "
+        'it has no mass, so no link of the model can be simulated; give it an <inertial> with '
         'a <mass> greater than zero and an <inertia>',
     )

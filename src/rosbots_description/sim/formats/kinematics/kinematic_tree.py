@@ -102,9 +102,13 @@ def build_tree(
         below.setdefault(joint.spec.parent, []).append(joint)
     root = _find_root(robot, by_name, joint_to)
     tree = KinematicTree(
-        root, by_name, joint_to,
-        {name: tuple(sorted(group, key=lambda joint: joint.spec.name))
-         for name, group in below.items()},
+        root,
+        by_name,
+        joint_to,
+        {
+            name: tuple(sorted(group, key=lambda joint: joint.spec.name))
+            for name, group in below.items()
+        },
     )
     _refuse_loops(tree)
     return tree

@@ -21,8 +21,8 @@ logger = logging.getLogger(__name__)
 MAX_SCRIPT_BYTES = 1_000_000
 _COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/', re.DOTALL)
 _SETTING = re.compile(
-    r'(?:^|{)[ \t]*(ambient|diffuse|specular|emissive|texture)[ \t]+([^\s{}][^\n{}]*)',
-    re.MULTILINE)
+    r'(?:^|{)[ \t]*(ambient|diffuse|specular|emissive|texture)[ \t]+([^\s{}][^\n{}]*)', re.MULTILINE
+)
 
 
 def script_material(
@@ -44,13 +44,21 @@ def script_material(
             places.append(addresses.path(uri, (uri.text or '').strip(), directory, home))
     places += addresses.material_folders()
     for path in _scripts(places):
-        text = _COMMENT.sub('', read_file(path, MAX_SCRIPT_BYTES, 'material script').decode(
-            errors='replace'))
+        text = _COMMENT.sub(
+            '', read_file(path, MAX_SCRIPT_BYTES, 'material script').decode(errors='replace')
+        )
         if (body := _body(text, name)) is not None:
             folder = os.path.dirname(path)
-            return _material(body, name, path, [
-                *(place for place in places if os.path.isdir(place)), folder,
-                os.path.join(os.path.dirname(folder), 'textures')])
+            return _material(
+                body,
+                name,
+                path,
+                [
+                    *(place for place in places if os.path.isdir(place)),
+                    folder,
+                    os.path.join(os.path.dirname(folder), 'textures'),
+                ],
+            )
     return None
 
 
@@ -59,21 +67,25 @@ def _scripts(places: list[str]) -> Iterator[str]:
         if os.path.isfile(place):
             yield place
         elif os.path.isdir(place):
-            yield from (os.path.join(place, file) for file in sorted(os.listdir(place))
-                        if file.endswith('.material'))
+            yield from (
+                os.path.join(place, file)
+                for file in sorted(os.listdir(place))
+                if file.endswith('.material')
+            )
 
 
 def _body(text: str, name: str) -> str | None:
     """Return what is between the braces of a material, or None."""
     head = re.search(
-        rf'^\s*material\s+"?{re.escape(name)}"?\s*(?::[^{{\n]*)?\s*{{', text, re.MULTILINE)
+        rf'^\s*material\s+"?{re.escape(name)}"?\s*(?::[^{{\n]*)?\s*{{', text, re.MULTILINE
+    )
     if head is None:
         return None
     depth, end = 1, head.end()
     while depth and end < len(text):
         depth += {'{': 1, '}': -1}.get(text[end], 0)
         end += 1
-    return text[head.end():end]
+    return text[head.end() : end]
 
 
 def _material(body: str, name: str, path: str, folders: list[str]) -> Material:
@@ -83,10 +95,19 @@ def _material(body: str, name: str, path: str, folders: list[str]) -> Material:
     white, black = Reflection().diffuse, Reflection().specular
     diffuse = _colour(settings, 'diffuse', white)
     shininess = parse_numbers(' '.join(settings.get('specular', '').split()[3:][-1:]), 1)
-    return Material((*diffuse, 1.0), name, Reflection(
-        _colour(settings, 'ambient', white), diffuse, _colour(settings, 'specular', black),
-        shininess[0] if shininess else 0.0, _colour(settings, 'emissive', black)),
-        _image(settings['texture'], name, folders) if 'texture' in settings else '', path)
+    return Material(
+        (*diffuse, 1.0),
+        name,
+        Reflection(
+            _colour(settings, 'ambient', white),
+            diffuse,
+            _colour(settings, 'specular', black),
+            shininess[0] if shininess else 0.0,
+            _colour(settings, 'emissive', black),
+        ),
+        _image(settings['texture'], name, folders) if 'texture' in settings else '',
+        path,
+    )
 
 
 def _colour(settings: dict[str, str], key: str, default: Vector) -> Vector:

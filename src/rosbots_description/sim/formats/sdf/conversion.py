@@ -50,9 +50,18 @@ _ATTRIBUTES = {
 }
 # Element -> the attribute that becomes its text.
 _TEXTS = {
-    'origin': 'pose', 'gravity': 'xyz', 'ambient': 'rgba', 'background': 'rgba',
-    'diffuse': 'rgba', 'specular': 'rgba', 'emissive': 'rgba', 'shadows': 'enabled',
-    'grid': 'enabled', 'direction': 'xyz', 'horizontal_fov': 'angle', 'parent': 'link',
+    'origin': 'pose',
+    'gravity': 'xyz',
+    'ambient': 'rgba',
+    'background': 'rgba',
+    'diffuse': 'rgba',
+    'specular': 'rgba',
+    'emissive': 'rgba',
+    'shadows': 'enabled',
+    'grid': 'enabled',
+    'direction': 'xyz',
+    'horizontal_fov': 'angle',
+    'parent': 'link',
     'child': 'link',
 }
 # The same, where the element has another meaning elsewhere: (parent, element) -> attribute.
@@ -76,8 +85,9 @@ def to_elements(element: etree._Element) -> None:
         if text is not None and not (child.text or '').strip():
             child.text = text
         to_elements(child)
-        child.tag = 'pose' if child.tag == 'origin' else \
-            _NAMES.get((element.tag, child.tag), child.tag)
+        child.tag = (
+            'pose' if child.tag == 'origin' else _NAMES.get((element.tag, child.tag), child.tag)
+        )
 
 
 def _take(element: etree._Element, key: str) -> str | None:

@@ -79,8 +79,7 @@ class SdfDocument:
 
     def script_material(self, element: etree._Element, name: str) -> Material | None:
         """Return a material of a script that a <material> names; see `ogre.script_material`."""
-        return script_material(
-            element, name, self.library.addresses, self._directory, self._home)
+        return script_material(element, name, self.library.addresses, self._directory, self._home)
 
     def included(self, element: etree._Element) -> 'SdfDocument':
         """Return the document that an <include> names.

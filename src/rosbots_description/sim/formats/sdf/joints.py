@@ -72,9 +72,7 @@ def read_sdf_joint(
     return _with_motion(spec, document, element, written, frame, frames)
 
 
-def _pose_in_child(
-    element: etree._Element, child: str, frame: Pose, frames: Frames
-) -> Pose:
+def _pose_in_child(element: etree._Element, child: str, frame: Pose, frames: Frames) -> Pose:
     """Return the pose of the joint's frame in its child, as it was written if that is in it."""
     pose = element.find('pose')
     if child == text_of(element, 'child') and not is_posed_elsewhere(pose):
@@ -95,7 +93,11 @@ def _end(element: etree._Element, role: str, frames: Frames) -> str:
 
 
 def _with_motion(
-    spec: JointSpec, document: SdfDocument, element: etree._Element, written: str, frame: Pose,
+    spec: JointSpec,
+    document: SdfDocument,
+    element: etree._Element,
+    written: str,
+    frame: Pose,
     frames: Frames,
 ) -> JointSpec:
     """Return the joint with its axis, limits and dynamics; `frame` is the joint's."""
@@ -103,9 +105,7 @@ def _with_motion(
     if axis is None:
         return replace(spec, axis=_UP)
     notes = document.notes
-    notes.check(
-        axis, ('xyz', 'limit', 'dynamics', 'use_parent_model_frame', 'initial_position')
-    )
+    notes.check(axis, ('xyz', 'limit', 'dynamics', 'use_parent_model_frame', 'initial_position'))
     spec = replace(spec, axis=_axis(document, axis, frame, frames))
     limit, dynamics = axis.find('limit'), axis.find('dynamics')
     if dynamics is not None:

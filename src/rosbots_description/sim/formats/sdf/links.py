@@ -14,8 +14,19 @@ from .frames import Frames, is_posed_elsewhere
 from .shapes import read_collision, read_visual
 from .values import boolean_of, damping_of, number_of, pose_in
 
-_READ = ('pose', 'inertial', 'collision', 'visual', 'gravity', 'self_collide', 'kinematic',
-         'velocity_decay', 'sensor', 'light', 'projector')
+_READ = (
+    'pose',
+    'inertial',
+    'collision',
+    'visual',
+    'gravity',
+    'self_collide',
+    'kinematic',
+    'velocity_decay',
+    'sensor',
+    'light',
+    'projector',
+)
 _PARTS = ('light', 'projector')
 _MOMENTS, _PRODUCTS = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
 

@@ -67,9 +67,7 @@ def read_model(
     document.notes.check(element, _READ, ('allow_auto_disable',))
     if static is None:
         static = boolean_of(element, 'static')
-    parts = ModelParts(
-        document, element, element.get('name', ''), static, element.find('pose')
-    )
+    parts = ModelParts(document, element, element.get('name', ''), static, element.find('pose'))
     known = len(document.notes.left_out.parts)
     nested = _nested_models(document, element, True if static else None)
     frames = _frames(element, nested)
@@ -82,7 +80,8 @@ def read_model(
     ]
     parts.reduced = {
         required_name(child): (child.get('attached_to', ''), pose_in(child.find('pose')))
-        for child in element.iterfind('frame') if child.get(REDUCED)
+        for child in element.iterfind('frame')
+        if child.get(REDUCED)
     }
     for model in nested:
         _merge_nested(parts, model, frames.pose_of(model.name, model.element))
@@ -174,9 +173,15 @@ def model_spec(parts: ModelParts, name: str) -> ModelSpec:
     if not parts.static:
         links = _movable(parts, links, {joint.child for joint in joints})
     return ModelSpec(
-        name, tuple(links), joints, tuple(parts.plugins), parts.static,
-        parts.reduced, parts.nested,
-        left_out=tuple(dict.fromkeys(parts.left_out)), location=location(parts.element),
+        name,
+        tuple(links),
+        joints,
+        tuple(parts.plugins),
+        parts.static,
+        parts.reduced,
+        parts.nested,
+        left_out=tuple(dict.fromkeys(parts.left_out)),
+        location=location(parts.element),
     )
 
 

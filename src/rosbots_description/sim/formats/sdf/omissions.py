@@ -13,17 +13,26 @@ logger = logging.getLogger(__name__)
 
 # A leaf with a value that holds here anyway is not mentioned.
 _NEUTRAL: dict[str, tuple[float, ...]] = {
-    'enable_wind': (0.0,), 'linear_velocity': (0.0, 0.0, 0.0),
+    'enable_wind': (0.0,),
+    'linear_velocity': (0.0, 0.0, 0.0),
     'slip': (0.0,),
-    'soft_cfm': (0.0,), 'soft_erp': (0.2,), 'collide_without_contact': (0.0,),
+    'soft_cfm': (0.0,),
+    'soft_erp': (0.2,),
+    'collide_without_contact': (0.0,),
     'collide_without_contact_bitmask': (1.0,),
-    'coefficient': (1.0,), 'use_patch_radius': (1.0,), 'patch_radius': (0.0,),
-    'surface_radius': (0.0,), 'visible': (1.0,), 'initial_position': (0.0,), 'center': (0.0,),
+    'coefficient': (1.0,),
+    'use_patch_radius': (1.0,),
+    'patch_radius': (0.0,),
+    'surface_radius': (0.0,),
+    'visible': (1.0,),
+    'initial_position': (0.0,),
+    'center': (0.0,),
 }
 
 # Stored and reported, but without effect here: parent -> children.
 _KEPT = {
-    'ode': ('max_vel', 'min_depth'), 'collision': ('max_contacts',),
+    'ode': ('max_vel', 'min_depth'),
+    'collision': ('max_contacts',),
     'limit': ('velocity',),
 }
 # The same, but the author of the model expects an effect.
@@ -32,8 +41,24 @@ _NOT_RUN = {'link': ('light', 'projector')}
 # Elements whose mere presence has an effect, whatever they contain.
 _PARTS = {part for parts in _NOT_RUN.values() for part in parts}
 # Containers that saved worlds write even when they are empty.
-_EMPTY = {'surface', 'friction', 'ode', 'bullet', 'torsional', 'bounce', 'contact', 'limit',
-          'dynamics', 'physics', 'geometry', 'script', 'wind', 'gui', 'audio', 'meta'}
+_EMPTY = {
+    'surface',
+    'friction',
+    'ode',
+    'bullet',
+    'torsional',
+    'bounce',
+    'contact',
+    'limit',
+    'dynamics',
+    'physics',
+    'geometry',
+    'script',
+    'wind',
+    'gui',
+    'audio',
+    'meta',
+}
 
 
 class Notes:

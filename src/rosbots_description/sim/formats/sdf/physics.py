@@ -30,8 +30,13 @@ _PYRAMID, CONE = 'pyramid_model', 'cone_model'
 _READ = ('max_step_size', 'real_time_update_rate', 'update_rate', 'gravity', 'max_contacts', 'ode')
 # The rate only limits the speed of the simulation; the solvers' settings have no counterpart here.
 _IDLE = ('real_time_factor', 'bullet', 'simbody', 'dart')
-_ODE_IDLE = ('type', 'min_step_size', 'use_dynamic_moi_rescaling',
-             'thread_position_correction', 'island_threads')
+_ODE_IDLE = (
+    'type',
+    'min_step_size',
+    'use_dynamic_moi_rescaling',
+    'thread_position_correction',
+    'island_threads',
+)
 
 
 def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSettings:
@@ -58,7 +63,8 @@ def read_physics(document: SdfDocument, world: etree._Element) -> PhysicsSetting
     model = _PYRAMID if friction is None else (friction.text or '').strip()
     if friction is not None and model not in (_PYRAMID, CONE):
         document.notes.warn(
-            friction, f"friction_model '{model}' is not supported; {_PYRAMID} is used")
+            friction, f"friction_model '{model}' is not supported; {_PYRAMID} is used"
+        )
     return PhysicsSettings(**settings, friction_cone=model == CONE)
 
 
@@ -71,8 +77,7 @@ def _check(document: SdfDocument, physics: etree._Element) -> None:
     for path, read in (
         ('ode', ('solver', 'constraints', 'max_contacts')),
         ('ode/solver', ('dt', 'precon_iters', 'iters', 'sor', 'friction_model')),
-        ('ode/constraints',
-         ('cfm', 'erp', 'contact_surface_layer', 'contact_max_correcting_vel')),
+        ('ode/constraints', ('cfm', 'erp', 'contact_surface_layer', 'contact_max_correcting_vel')),
     ):
         part = physics.find(path)
         if part is not None:

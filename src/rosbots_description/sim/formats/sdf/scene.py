@@ -19,9 +19,7 @@ def read_scene(document: SdfDocument, world: etree._Element) -> SceneSpec:
     element = world.find('scene')
     if element is None:
         return SceneSpec()
-    document.notes.check(
-        element, READ_OF_SCENE, ('grid', 'sky', 'fog', 'origin_visual')
-    )
+    document.notes.check(element, READ_OF_SCENE, ('grid', 'sky', 'fog', 'origin_visual'))
     plain = SceneSpec()
     return SceneSpec(
         colour_of(element, 'ambient') or plain.ambient,
@@ -43,8 +41,6 @@ def read_user_camera(document: SdfDocument, world: etree._Element) -> Pose | Non
     camera = gui.find('camera')
     if camera is None:
         return None
-    document.notes.check(
-        camera, ('pose',), ('view_controller', 'projection_type', 'track_visual')
-    )
+    document.notes.check(camera, ('pose',), ('view_controller', 'projection_type', 'track_visual'))
     pose = camera.find('pose')
     return None if pose is None else pose_in(pose)

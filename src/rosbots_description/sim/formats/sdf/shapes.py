@@ -187,7 +187,8 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
         fdir1=vector_of(surface, 'friction/ode/fdir1', default.fdir1),
         slip1=not_negative_of(surface, 'friction/ode/slip1', default.slip1),
         slip2=not_negative_of(surface, 'friction/ode/slip2', default.slip2),
-        kp=default.kp if stiffness is None
+        kp=default.kp
+        if stiffness is None
         else not_negative_of(surface, f'{contact}/kp', default.kp),
         kd=not_negative_of(surface, f'{contact}/kd', default.kd),
         # SDF 1.0 files of Gazebo have -1 for these
@@ -201,11 +202,15 @@ def _surface(document: SdfDocument, collision: etree._Element) -> Surface:
 
 def _bitmasks(surface: etree._Element) -> dict[str, int]:
     """Return the bitmasks; the category is that which the collision collides with if not given."""
-    written = {tag: element for tag in _BITMASKS
-               if (element := surface.find(f'contact/{tag}')) is not None}
+    written = {
+        tag: element for tag in _BITMASKS if (element := surface.find(f'contact/{tag}')) is not None
+    }
     masks = {tag: bitmask(element) for tag, element in written.items()}
-    return {'category_bitmask': masks['collide_bitmask'], **masks} \
-        if 'collide_bitmask' in masks else masks
+    return (
+        {'category_bitmask': masks['collide_bitmask'], **masks}
+        if 'collide_bitmask' in masks
+        else masks
+    )
 
 
 def _friction(surface: etree._Element, path: str, default: float) -> float:

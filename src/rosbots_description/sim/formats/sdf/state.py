@@ -33,8 +33,7 @@ def read_states(
         links: dict[str, Pose] = {}
         _read_model(document, model, '', links)
         pose = model.find('pose')
-        placed = ModelState(
-            model.get('name', ''), None if pose is None else pose_in(pose), links)
+        placed = ModelState(model.get('name', ''), None if pose is None else pose_in(pose), links)
         states.append(_with_motion(placed, model) if exact else placed)
     return tuple(states), _sim_time(element)
 
@@ -55,24 +54,36 @@ def _read_model(
 
 
 def _with_motion(state: ModelState, model: etree._Element) -> ModelState:
-    return replace(state, twists=_twists(model), joints=_joints(model), motors=_motors(model),
-                   axes=_axes(model))
+    return replace(
+        state,
+        twists=_twists(model),
+        joints=_joints(model),
+        motors=_motors(model),
+        axes=_axes(model),
+    )
 
 
 def _twists(model: etree._Element) -> dict[str, Twist]:
-    found = {link.get('name', ''): numbers_of(link, 'velocity', (0.0,) * 6)
-             for link in model.iterfind('link')}
+    found = {
+        link.get('name', ''): numbers_of(link, 'velocity', (0.0,) * 6)
+        for link in model.iterfind('link')
+    }
     return {name: Twist(as_vector(six[:3]), as_vector(six[3:])) for name, six in found.items()}
 
 
 def _joints(model: etree._Element) -> dict[str, tuple[float, float]]:
-    return {joint.get('name', ''): (number_of(joint, 'angle', 0.0), number(joint, VELOCITY, 0.0))
-            for joint in model.iterfind('joint')}
+    return {
+        joint.get('name', ''): (number_of(joint, 'angle', 0.0), number(joint, VELOCITY, 0.0))
+        for joint in model.iterfind('joint')
+    }
 
 
 def _motors(model: etree._Element) -> dict[str, tuple[float, float]]:
-    return {joint.get('name', ''): (number(joint, TARGET), limit_number(joint, EFFORT))
-            for joint in model.iterfind('joint') if joint.get(TARGET) is not None}
+    return {
+        joint.get('name', ''): (number(joint, TARGET), limit_number(joint, EFFORT))
+        for joint in model.iterfind('joint')
+        if joint.get(TARGET) is not None
+    }
 
 
 def _axes(model: etree._Element) -> dict[str, Pose]:

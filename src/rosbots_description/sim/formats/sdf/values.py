@@ -29,9 +29,7 @@ def text_of(parent: etree._Element, path: str, default: str = '') -> str:
     return default if element is None else scalar(element) or default
 
 
-def numbers_of(
-    parent: etree._Element, path: str, default: tuple[float, ...]
-) -> tuple[float, ...]:
+def numbers_of(parent: etree._Element, path: str, default: tuple[float, ...]) -> tuple[float, ...]:
     """Return as many finite numbers as `default` has.
 
     Raises:

@@ -34,14 +34,26 @@ from .values import text_of
 logger = logging.getLogger(__name__)
 
 _READ = (
-    'model', 'include', 'light', 'plugin', 'scene', 'gui', 'physics', 'gravity', 'state', 'frame')
+    'model',
+    'include',
+    'light',
+    'plugin',
+    'scene',
+    'gui',
+    'physics',
+    'gravity',
+    'state',
+    'frame',
+)
 # Elements with an effect on sound and other sensors only.
 _IDLE = ('audio', 'atmosphere', 'magnetic_field', 'spherical_coordinates')
 
 # End of the message about an element that is not valid.
 _WITHOUT = {
-    'model': 'this model is left out', 'light': 'this light is left out',
-    'frame': 'this frame is left out', 'state': "the world's <state> is not applied",
+    'model': 'this model is left out',
+    'light': 'this light is left out',
+    'frame': 'this frame is left out',
+    'state': "the world's <state> is not applied",
     'gui': 'windows choose their own view',
 }
 
@@ -131,8 +143,9 @@ def open_world(
         ModelError: the file cannot be read; or as `load_world`.
     """
     text = read_file(os.fspath(path), MAX_XML_BYTES, 'world file')
-    return load_world(text, os.fspath(path), find_model=find_model, find_package=find_package,
-                      find_file=find_file)
+    return load_world(
+        text, os.fspath(path), find_model=find_model, find_package=find_package, find_file=find_file
+    )
 
 
 @contextmanager
@@ -157,7 +170,8 @@ def _report_missing(document: SdfDocument, content: _Content) -> None:
         without = 'the world is loaded without them'
         shown = listed([repr(name) for name in names])
         end = not_on_model_path(
-            document.library.addresses.find_model, 'them', 'is' if len(names) == 1 else 'are')
+            document.library.addresses.find_model, 'them', 'is' if len(names) == 1 else 'are'
+        )
         sentence = document.notes.with_source(f'{len(content.missing)} <include>s: {shown} {end}')
     content.faults.append(sentence)
     logger.error('%s; %s', sentence, without)
@@ -217,9 +231,7 @@ def _add_model(
     content.models[name] = (model_spec(parts, name), pose)
 
 
-def _free_name(
-    document: SdfDocument, element: etree._Element, name: str, content: _Content
-) -> str:
+def _free_name(document: SdfDocument, element: etree._Element, name: str, content: _Content) -> str:
     """Return the name, with a number appended if it is taken, as by Gazebo's factory."""
     free = name
     while free in content.models:
@@ -247,7 +259,10 @@ def _read_plugin(
 
 
 _READERS = {
-    'model': _read_model, 'include': _read_include, 'light': _read_light, 'plugin': _read_plugin
+    'model': _read_model,
+    'include': _read_include,
+    'light': _read_light,
+    'plugin': _read_plugin,
 }
 
 

@@ -40,15 +40,20 @@ _ENDLESS = 1e16  # SDF's number for no limit
 _SCRIPTS = 'file://media/materials/scripts/gazebo.material'
 # Fields of Surface that differ from SDF's defaults are written here, below <collision>.
 _SURFACE = {
-    'mu': 'surface/friction/ode/mu', 'mu2': 'surface/friction/ode/mu2',
-    'fdir1': 'surface/friction/ode/fdir1', 'slip1': 'surface/friction/ode/slip1',
-    'slip2': 'surface/friction/ode/slip2', 'kp': 'surface/contact/ode/kp',
-    'kd': 'surface/contact/ode/kd', 'max_vel': 'surface/contact/ode/max_vel',
+    'mu': 'surface/friction/ode/mu',
+    'mu2': 'surface/friction/ode/mu2',
+    'fdir1': 'surface/friction/ode/fdir1',
+    'slip1': 'surface/friction/ode/slip1',
+    'slip2': 'surface/friction/ode/slip2',
+    'kp': 'surface/contact/ode/kp',
+    'kd': 'surface/contact/ode/kd',
+    'max_vel': 'surface/contact/ode/max_vel',
     'min_depth': 'surface/contact/ode/min_depth',
     'restitution': 'surface/bounce/restitution_coefficient',
     'threshold': 'surface/bounce/threshold',
     'collide_bitmask': 'surface/contact/collide_bitmask',
-    'max_contacts': 'max_contacts', 'laser_retro': 'laser_retro',
+    'max_contacts': 'max_contacts',
+    'laser_retro': 'laser_retro',
 }
 # Addresses that mean the same in any file; others are relative to the file that they are in.
 _FINDABLE = ('model://', 'package://')
@@ -80,8 +85,10 @@ def copy_of_model(spec: ModelSpec) -> str:
 
 def sdf_of_include(address: str) -> str:
     """Return SDF that includes a model by its address, such as model://sun."""
-    return (f'<sdf version="1.7"><world name="w"><include><uri>{escape(address)}</uri></include>'
-            '</world></sdf>')
+    return (
+        f'<sdf version="1.7"><world name="w"><include><uri>{escape(address)}</uri></include>'
+        '</world></sdf>'
+    )
 
 
 def add_model(parent: etree._Element, spec: ModelSpec, pose: Pose) -> None:
@@ -100,8 +107,9 @@ def add_model(parent: etree._Element, spec: ModelSpec, pose: Pose) -> None:
     for name, place in spec.nested.items():
         put_pose(etree.SubElement(model, 'model', name=name), place)
     for name, (link_name, place) in spec.reduced.items():
-        frame = etree.SubElement(model, 'frame', {
-            'name': name, 'attached_to': link_name, REDUCED: 'true'})
+        frame = etree.SubElement(
+            model, 'frame', {'name': name, 'attached_to': link_name, REDUCED: 'true'}
+        )
         put_pose(frame, place)
     for plugin in spec.plugins:
         add_plugin(model, plugin)
@@ -143,8 +151,12 @@ def _add_collision(link: etree._Element, spec: Collision) -> None:
     plain = Surface()
     for field, path in _SURFACE.items():
         put(collision, path, getattr(spec.surface, field), getattr(plain, field))
-    put(collision, 'surface/contact/category_bitmask', spec.surface.category_bitmask,
-        spec.surface.collide_bitmask)
+    put(
+        collision,
+        'surface/contact/category_bitmask',
+        spec.surface.category_bitmask,
+        spec.surface.collide_bitmask,
+    )
 
 
 def _add_visual(link: etree._Element, spec: Visual) -> None:

@@ -50,8 +50,14 @@ from ..xml import (
 )
 
 # URDF type -> ours. The last two impose no constraint in Gazebo either: the child is free.
-_JOINT_TYPES = {'revolute': REVOLUTE, 'continuous': REVOLUTE, 'prismatic': PRISMATIC,
-                'fixed': FIXED, 'floating': FREE, 'planar': FREE}
+_JOINT_TYPES = {
+    'revolute': REVOLUTE,
+    'continuous': REVOLUTE,
+    'prismatic': PRISMATIC,
+    'fixed': FIXED,
+    'floating': FREE,
+    'planar': FREE,
+}
 
 CheckMesh = Callable[[str, Vector], object]  # file, scale; raises ModelError if it is unusable
 
@@ -130,10 +136,13 @@ class LinkReader:
         name = element.get('name', '')
         found = self._colour(element) or self._materials.get(name) or gazebo_material(name)
         if found is None and element.find('texture') is None and element.find('color') is None:
-            note(self.notes, lambda: (
-                f'{location(element)}: it has no <color> anywhere; grey is shown'
-                f'{suggestion(name, self._materials)}'
-            ))
+            note(
+                self.notes,
+                lambda: (
+                    f'{location(element)}: it has no <color> anywhere; grey is shown'
+                    f'{suggestion(name, self._materials)}'
+                ),
+            )
         return found
 
     def _colour(self, element: etree._Element) -> Material | None:
@@ -245,29 +254,39 @@ def read_urdf_joint(
         raise fault(
             element,
             f"type '{written}' is unknown; there are {', '.join(_JOINT_TYPES)}"
-            if written else f'it has no type; there are {", ".join(_JOINT_TYPES)}',
+            if written
+            else f'it has no type; there are {", ".join(_JOINT_TYPES)}',
         )
     parent, child = _end(element, 'parent'), _end(element, 'child')
     if kind == FREE:
-        note(notes, lambda: (
-            f'{location(element)}: a {written} joint imposes no constraint here; '
-            f"'{shortened(child, 60)}' and its descendants move freely"
-        ))
+        note(
+            notes,
+            lambda: (
+                f'{location(element)}: a {written} joint imposes no constraint here; '
+                f"'{shortened(child, 60)}' and its descendants move freely"
+            ),
+        )
     if kind in (FIXED, FREE):
         is_reduced = kind == FIXED and name not in kept
         limits = Limits(lower=0.0, upper=0.0) if kept.get(name) == REVOLUTE else Limits()
-        spec = JointSpec(name, kept.get(name, kind) if kind == FIXED else kind,
-                         parent, child, **limits)
+        spec = JointSpec(
+            name, kept.get(name, kind) if kind == FIXED else kind, parent, child, **limits
+        )
         return TreeJoint(spec, element, origin(element), is_reduced)
     dynamics = element.find('dynamics')
     return TreeJoint(
         JointSpec(
-            name, kind, parent, child, axis=_axis(element, notes),
+            name,
+            kind,
+            parent,
+            child,
+            axis=_axis(element, notes),
             damping=_not_negative(dynamics, 'damping', notes),
             friction=_not_negative(dynamics, 'friction', notes),
             **_limits(element, written, notes),
         ),
-        element, origin(element),
+        element,
+        origin(element),
     )
 
 
@@ -287,10 +306,13 @@ def _axis(element: etree._Element, notes: list[str]) -> Vector:
     x, y, z = numbers(axis, 'xyz', (1.0, 0.0, 0.0))
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
-        note(notes, lambda: (
-            f'{location(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
-            'x is used, as in Gazebo; write e.g. "0 0 1"'
-        ))
+        note(
+            notes,
+            lambda: (
+                f'{location(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
+                'x is used, as in Gazebo; write e.g. "0 0 1"'
+            ),
+        )
         return (1.0, 0.0, 0.0)
     # Scale first, so that no square underflows or overflows.
     x, y, z = x / largest, y / largest, z / largest
@@ -298,17 +320,18 @@ def _axis(element: etree._Element, notes: list[str]) -> Vector:
     return (x / length, y / length, z / length)
 
 
-def _not_negative(
-    element: etree._Element | None, attribute: str, notes: list[str]
-) -> float:
+def _not_negative(element: etree._Element | None, attribute: str, notes: list[str]) -> float:
     if element is None:
         return 0.0
     value = number(element, attribute, 0.0)
     if value < 0.0:
-        note(notes, lambda: (
-            f'{location(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
-            'negative; 0 is used, as it can only dissipate energy'
-        ))
+        note(
+            notes,
+            lambda: (
+                f'{location(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
+                'negative; 0 is used, as it can only dissipate energy'
+            ),
+        )
     return max(0.0, value)
 
 
@@ -334,10 +357,13 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> Limits:
         return limits
     if lower > upper:
         low, high = upper, lower
-        note(notes, lambda: (
-            f'{location(limit)}: lower limit {high:g} is above upper limit {low:g}; '
-            'the two are swapped'
-        ))
+        note(
+            notes,
+            lambda: (
+                f'{location(limit)}: lower limit {high:g} is above upper limit {low:g}; '
+                'the two are swapped'
+            ),
+        )
         lower, upper = low, high
     if math.isfinite(lower):
         limits['lower'] = lower

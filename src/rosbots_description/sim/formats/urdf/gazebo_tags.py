@@ -59,28 +59,49 @@ from ..xml import (
 
 SurfaceNumber = Literal['mu', 'mu2', 'kp', 'kd', 'max_vel', 'min_depth', 'laser_retro']
 _SURFACE_NUMBERS: dict[str, SurfaceNumber] = {
-    'mu1': 'mu', 'mu2': 'mu2', 'kp': 'kp', 'kd': 'kd', 'maxVel': 'max_vel',
-    'minDepth': 'min_depth', 'laserRetro': 'laser_retro',
+    'mu1': 'mu',
+    'mu2': 'mu2',
+    'kp': 'kp',
+    'kd': 'kd',
+    'maxVel': 'max_vel',
+    'minDepth': 'min_depth',
+    'laserRetro': 'laser_retro',
 }
 # The same inside <collision>, in SDF's own structure.
 _SURFACE_PATHS: dict[str, SurfaceNumber] = {
-    'surface/friction/ode/mu': 'mu', 'surface/friction/ode/mu2': 'mu2',
-    'surface/contact/ode/kp': 'kp', 'surface/contact/ode/kd': 'kd',
-    'surface/contact/ode/max_vel': 'max_vel', 'surface/contact/ode/min_depth': 'min_depth',
+    'surface/friction/ode/mu': 'mu',
+    'surface/friction/ode/mu2': 'mu2',
+    'surface/contact/ode/kp': 'kp',
+    'surface/contact/ode/kd': 'kd',
+    'surface/contact/ode/max_vel': 'max_vel',
+    'surface/contact/ode/min_depth': 'min_depth',
     'laser_retro': 'laser_retro',
 }
-_NUMBER_TAGS = {*_SURFACE_NUMBERS, 'maxContacts', 'dampingFactor', 'springStiffness',
-                'springReference'}
+_NUMBER_TAGS = {
+    *_SURFACE_NUMBERS,
+    'maxContacts',
+    'dampingFactor',
+    'springStiffness',
+    'springReference',
+}
 _LEADING_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?=[^\w.]|f?$)')
 _PARTS = ('light', 'projector')
 # Stored and reported, but without effect here.
 _KEPT = {'maxVel', 'minDepth', 'maxContacts'}
 _KEPT_PATHS = {'surface/contact/ode/max_vel', 'surface/contact/ode/min_depth', 'max_contacts'}
 # Settings of Gazebo's own solver, without a counterpart or visible effect here.
-_SOLVER_TAGS = {'stopCfm', 'stopErp', 'provideFeedback', 'implicitSpringDamper', 'cfmDamping',
-                'fudgeFactor', 'canonicalBody'}
+_SOLVER_TAGS = {
+    'stopCfm',
+    'stopErp',
+    'provideFeedback',
+    'implicitSpringDamper',
+    'cfmDamping',
+    'fudgeFactor',
+    'canonicalBody',
+}
 _SPRING_TAGS: dict[str, Literal['stiffness', 'reference']] = {
-    'springStiffness': 'stiffness', 'springReference': 'reference',
+    'springStiffness': 'stiffness',
+    'springReference': 'reference',
 }
 
 
@@ -142,17 +163,29 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
         if child.tag not in _NUMBER_TAGS or parse_number(scalar(child)) is not None:
             continue
         if not scalar(child):
-            note(tags.notes, partial(
-                '{}: <{}> is empty and ignored; give it a number'.format,
-                location(child), child.tag))
+            note(
+                tags.notes,
+                partial(
+                    '{}: <{}> is empty and ignored; give it a number'.format,
+                    location(child),
+                    child.tag,
+                ),
+            )
             block.remove(child)
             continue
         found = _LEADING_NUMBER.match(scalar(child))
         if found and not is_endless(child):
             written = scalar(child)
-            note(tags.notes, partial(
-                '{}: of <{}> {!r} only the number {} is read, as in Gazebo'.format,
-                location(child), child.tag, shortened(written, 60), found[0]))
+            note(
+                tags.notes,
+                partial(
+                    '{}: of <{}> {!r} only the number {} is read, as in Gazebo'.format,
+                    location(child),
+                    child.tag,
+                    shortened(written, 60),
+                    found[0],
+                ),
+            )
             child.attrib.pop('value', '')
             child.text = found[0]
 
@@ -206,14 +239,26 @@ def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
     if tags is None:
         return link
     spec: LinkSpec = link.spec
-    collisions = tuple(
-        replace(shape, surface=replace(shape.surface, **tags.surface)) for shape in spec.collisions
-    ) if tags.surface else spec.collisions
-    visuals = tuple(replace(shape, material=tags.material) for shape in spec.visuals) \
-        if tags.material else spec.visuals
+    collisions = (
+        tuple(
+            replace(shape, surface=replace(shape.surface, **tags.surface))
+            for shape in spec.collisions
+        )
+        if tags.surface
+        else spec.collisions
+    )
+    visuals = (
+        tuple(replace(shape, material=tags.material) for shape in spec.visuals)
+        if tags.material
+        else spec.visuals
+    )
     spec = replace(
-        spec, collisions=collisions, visuals=visuals, sensors=tuple(tags.sensors),
-        parts=tuple(tags.parts), **tags.flags
+        spec,
+        collisions=collisions,
+        visuals=visuals,
+        sensors=tuple(tags.sensors),
+        parts=tuple(tags.parts),
+        **tags.flags,
     )
     return replace(link, spec=spec, flags=tags.flags)
 
@@ -232,10 +277,13 @@ def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]
 def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     if not filename:
-        note(tags.notes, lambda: (
-            f'{location(element)}: a <plugin> without filename is ignored; '
-            'add filename="libgazebo_ros_….so"'
-        ))
+        note(
+            tags.notes,
+            lambda: (
+                f'{location(element)}: a <plugin> without filename is ignored; '
+                'add filename="libgazebo_ros_….so"'
+            ),
+        )
         return
     tags.plugins.append(PluginSpec(element.get('name', ''), filename, to_element(element)))
 
@@ -282,10 +330,13 @@ def _say(tags: GazeboTags, sentence: str) -> None:
 
 def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
-    note(tags.notes, lambda: (
-        f'{location(element)}: a <plugin> of a link is not run, as in Gazebo; '
-        f'{library_remark(filename)}; move it to a <gazebo> without reference'
-    ))
+    note(
+        tags.notes,
+        lambda: (
+            f'{location(element)}: a <plugin> of a link is not run, as in Gazebo; '
+            f'{library_remark(filename)}; move it to a <gazebo> without reference'
+        ),
+    )
 
 
 def _set_surface(link: LinkTags, key: SurfaceNumber, element: etree._Element) -> None:
@@ -341,7 +392,8 @@ def _read_collision(element: etree._Element, link: LinkTags) -> None:
         if child is not None:
             _set_surface(link, key, child)
     for path, reader in (
-        ('surface/friction/ode/fdir1', _read_direction), ('max_contacts', _read_max_contacts),
+        ('surface/friction/ode/fdir1', _read_direction),
+        ('max_contacts', _read_max_contacts),
         ('surface/contact/collide_bitmask', _read_collide_bitmask),
         ('surface/contact/category_bitmask', _read_category_bitmask),
     ):
@@ -367,10 +419,13 @@ def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     block = next(element.iterancestors('material'), element)
     material = gazebo_material(script) or script_material(block, script, tags.addresses)
     if material is None:
-        note(tags.notes, lambda: (
-            f"{location(element)}: material '{shortened(script, 60)}' is neither one of Gazebo's "
-            'nor in a script along GAZEBO_RESOURCE_PATH; grey is shown; write e.g. Gazebo/Red'
-        ))
+        note(
+            tags.notes,
+            lambda: (
+                f"{location(element)}: material '{shortened(script, 60)}' is neither one of Gazebo's "
+                'nor in a script along GAZEBO_RESOURCE_PATH; grey is shown; write e.g. Gazebo/Red'
+            ),
+        )
         material = Material(script=script)
     link.material = material
 

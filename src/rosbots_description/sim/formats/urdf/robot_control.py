@@ -32,8 +32,11 @@ def read_robot_control(robot: etree._Element) -> RobotControl:
             transmissions.append(_transmission(element, faults))
         except ModelError as error:
             faults.append(str(error))
-    joints = {name: _joint(element) for element in robot.iterfind('joint')
-              if (name := element.get('name'))}
+    joints = {
+        name: _joint(element)
+        for element in robot.iterfind('joint')
+        if (name := element.get('name'))
+    }
     return RobotControl(tuple(transmissions), joints, tuple(faults))
 
 
@@ -50,13 +53,15 @@ def _transmission(element: etree._Element, faults: list[str]) -> Transmission:
         raise ModelError(f"Skipping empty type element in transmission '{name}'.")
     joints: dict[str, tuple[str, ...]] = {}
     for joint in _named(element, 'joint', name, faults):
-        interfaces = tuple(filter(None, (
-            (one.text or '').strip() for one in joint.iterfind('hardwareInterface'))))
+        interfaces = tuple(
+            filter(None, ((one.text or '').strip() for one in joint.iterfind('hardwareInterface')))
+        )
         if interfaces:
             joints[joint.get('name', '')] = interfaces
         else:
-            faults.append('No valid hardware interface element found in joint '
-                          f"'{joint.get('name')}'.")
+            faults.append(
+                f"No valid hardware interface element found in joint '{joint.get('name')}'."
+            )
     if not joints:
         raise ModelError(f"Failed to load joints for transmission '{name}'.")
     if not _named(element, 'actuator', name, faults):
@@ -86,20 +91,33 @@ def _joint(element: etree._Element) -> ControlledJoint:
     limit, safety, mimic = (element.find(tag) for tag in ('limit', 'safety_controller', 'mimic'))
     soft = None
     if safety is not None:
-        soft = SoftLimits(*(_number(safety, key) for key in (
-            'soft_lower_limit', 'soft_upper_limit', 'k_position', 'k_velocity')))
+        soft = SoftLimits(
+            *(
+                _number(safety, key)
+                for key in ('soft_lower_limit', 'soft_upper_limit', 'k_position', 'k_velocity')
+            )
+        )
     copied = None
     if mimic is not None and mimic.get('joint'):
         copied = Mimic(
-            mimic.get('joint', ''), _number(mimic, 'multiplier', 1.0), _number(mimic, 'offset'))
+            mimic.get('joint', ''), _number(mimic, 'multiplier', 1.0), _number(mimic, 'offset')
+        )
     place = _origin(element.find('origin'))
     if limit is None:
         return ControlledJoint(kind, soft=soft, mimic=copied, origin=place)
     lower, upper = -math.inf, math.inf
     if kind in ('revolute', 'prismatic'):
         lower, upper = sorted((_number(limit, 'lower'), _number(limit, 'upper')))
-    return ControlledJoint(kind, lower, upper, abs(_number(limit, 'velocity')),
-                           abs(_number(limit, 'effort')), soft, copied, place)
+    return ControlledJoint(
+        kind,
+        lower,
+        upper,
+        abs(_number(limit, 'velocity')),
+        abs(_number(limit, 'effort')),
+        soft,
+        copied,
+        place,
+    )
 
 
 def _origin(element: etree._Element | None) -> Vector:

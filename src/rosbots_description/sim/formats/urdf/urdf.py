@@ -141,8 +141,10 @@ def _read(
     tree = build_tree(robot, links, joints)
     world = tree.links[tree.root].spec if tree.root == WORLD else None
     if world and (world.collisions or world.visuals or world.inertial):
-        notes.append("'world': a root of that name is the world itself; the content of the link is "
-                     'not simulated, as in Gazebo')
+        notes.append(
+            "'world': a root of that name is the world itself; the content of the link is "
+            'not simulated, as in Gazebo'
+        )
     return tree, tags
 
 
@@ -150,13 +152,17 @@ def _regularised_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[L
     """Return the links, with zero principal moments replaced; `notes` names the changed ones."""
     links = tuple(_possible_link(link, notes) for link in links)
     turned = tuple(replace(link, inertial=regularised(link.mass_properties)) for link in links)
-    changed = [new.name for old, new in zip(links, turned, strict=True)
-               if new.inertial is not old.inertial]
+    changed = [
+        new.name for old, new in zip(links, turned, strict=True) if new.inertial is not old.inertial
+    ]
     if changed:
-        note(notes, lambda: (
-            f'{_names(changed)}: an inertia of zero cannot be simulated; '
-            'that of a small sphere of the same mass is used'
-        ))
+        note(
+            notes,
+            lambda: (
+                f'{_names(changed)}: an inertia of zero cannot be simulated; '
+                'that of a small sphere of the same mass is used'
+            ),
+        )
     return turned
 
 

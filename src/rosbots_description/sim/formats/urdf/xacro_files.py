@@ -66,9 +66,13 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         vars(xacro)['eval_extension'] = resolve
     for name in arguments:
         if name not in known.asked:
-            logger.warning('%s', printable(
-                f"{path}: there is no xacro argument '{shortened(name)}'"
-                f'{suggestion(name, known.asked)}'))
+            logger.warning(
+                '%s',
+                printable(
+                    f"{path}: there is no xacro argument '{shortened(name)}'"
+                    f'{suggestion(name, known.asked)}'
+                ),
+            )
     return text
 
 

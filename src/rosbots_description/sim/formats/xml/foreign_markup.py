@@ -24,17 +24,18 @@ def remove_xacro(root: etree._Element) -> list[str]:
         notes.append(f'unexpanded xacro is ignored: {_listed(shown)}; {XACRO_CURE}')
     expressions = _expressions(root)
     if expressions:
-        notes.append(
-            f'unexpanded xacro is taken literally: {_listed(expressions)}; {XACRO_CURE}'
-        )
+        notes.append(f'unexpanded xacro is taken literally: {_listed(expressions)}; {XACRO_CURE}')
     return notes
 
 
 def foreign_tags(robot: etree._Element) -> list[str]:
     """Return the warning about tags of a URDF with a prefix, if any."""
     shown = [
-        _opening(element) for child in robot if child.tag not in _OWN
-        for element in child.iter(etree.Element) if ':' in tag_of(element)
+        _opening(element)
+        for child in robot
+        if child.tag not in _OWN
+        for element in child.iter(etree.Element)
+        if ':' in tag_of(element)
     ]
     return [f'tags of another namespace are ignored: {_listed(shown)}'] if shown else []
 
@@ -59,7 +60,8 @@ def _expressions(root: etree._Element) -> list[str]:
         places.append(((element.text or '').strip(), element.text or ''))
         found += [
             f'{shortened(shown, 100)} in <{tag_of(element)}> ({line_of(element)})'
-            for shown, value in places if is_expression(value)
+            for shown, value in places
+            if is_expression(value)
         ]
     return found
 

@@ -44,8 +44,10 @@ class LeftOut:
         """Return the messages about missing parts; one for each mesh, with all its users."""
         return [
             *self._faults,
-            *(f'{reason}; left out: {listed(users)}'
-              for reason, users in islice(self._meshes.items(), MAX_NOTES)),
+            *(
+                f'{reason}; left out: {listed(users)}'
+                for reason, users in islice(self._meshes.items(), MAX_NOTES)
+            ),
         ]
 
 

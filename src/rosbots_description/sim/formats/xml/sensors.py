@@ -34,8 +34,10 @@ def read_sensor(
         if filename:
             plugins.append(PluginSpec(child.get('name', ''), filename, to_element(child)))
         else:
-            complain(f'{location(child)}: a <plugin> without filename is ignored; '
-                     'filename="libgazebo_ros_….so" picks the code')
+            complain(
+                f'{location(child)}: a <plugin> without filename is ignored; '
+                'filename="libgazebo_ros_….so" picks the code'
+            )
     return SensorSpec(
         name=element.get('name', ''),
         type=element.get('type', '').strip(),
@@ -56,8 +58,10 @@ def _own_pose(element: etree._Element, complain: Complain) -> Pose:
     text = child.text or ''
     numbers = parse_numbers(text, 6)
     if numbers is None:
-        complain(f"{location(child)}: <pose> is '{shortened(text, 60)}'; it takes six finite "
-                 "numbers. The sensor is at its link's origin")
+        complain(
+            f"{location(child)}: <pose> is '{shortened(text, 60)}'; it takes six finite "
+            "numbers. The sensor is at its link's origin"
+        )
         return IDENTITY
     x, y, z, *angles = numbers
     return Pose((x, y, z), from_rpy(*angles))
@@ -69,8 +73,10 @@ def _rate(element: etree._Element, complain: Complain) -> float:
         return 0.0
     rate = parse_number(scalar(child))
     if rate is None:
-        complain(f"{location(child)}: <update_rate> is '{shortened(scalar(child), 60)}'; it takes "
-                 'a finite number [Hz]. The sensor measures in every step')
+        complain(
+            f"{location(child)}: <update_rate> is '{shortened(scalar(child), 60)}'; it takes "
+            'a finite number [Hz]. The sensor measures in every step'
+        )
         return 0.0
     return max(0.0, rate)
 

@@ -33,8 +33,14 @@ MAX_DAMPING = 1000.0  # [1/s] with steps of 1 ms it stops a link in one step
 _CONTROL = re.compile(r'[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 _INFINITE = ('inf', 'infinity')
 _TRUE = {'true', 'yes', '1'}
-_COUNTS = {1: 'one finite number', 2: 'two finite numbers', 3: 'three finite numbers',
-           4: 'four finite numbers', 6: 'six finite numbers', 7: 'seven finite numbers'}
+_COUNTS = {
+    1: 'one finite number',
+    2: 'two finite numbers',
+    3: 'three finite numbers',
+    4: 'four finite numbers',
+    6: 'six finite numbers',
+    7: 'seven finite numbers',
+}
 
 
 def tag_of(element: etree._Element) -> str:
@@ -123,9 +129,7 @@ def number(element: etree._Element, attribute: str, default: float | None = None
     return numbers(element, attribute, None if default is None else (default,), 1)[0]
 
 
-def limit_number(
-    element: etree._Element, attribute: str, default: float | None = None
-) -> float:
+def limit_number(element: etree._Element, attribute: str, default: float | None = None) -> float:
     """Return one number from an attribute, as `number` does, or infinity for inf."""
     text = element.get(attribute, '').strip().lower()
     if text.lstrip('+-') in _INFINITE:
@@ -176,9 +180,7 @@ def require_mass(element: etree._Element, mass: float, moments: Collection[float
         ModelError: the engine could not distinguish them from zero or infinity.
     """
     if mass > 0.0 and not MIN_MASS <= mass <= MAX_MASS:
-        raise fault(
-            element, f'mass {mass:g} kg is not valid; use {MIN_MASS:g} to {MAX_MASS:g} kg'
-        )
+        raise fault(element, f'mass {mass:g} kg is not valid; use {MIN_MASS:g} to {MAX_MASS:g} kg')
     if max(map(abs, moments), default=0.0) > MAX_INERTIA:
         raise fault(
             element,
@@ -196,8 +198,7 @@ def require_damping(element: etree._Element, value: float) -> None:
     if not 0.0 <= value <= MAX_DAMPING:
         raise fault(
             element,
-            f'<{tag_of(element)}> is {value:g}; damping must be 0 to '
-            f'{MAX_DAMPING:g}',
+            f'<{tag_of(element)}> is {value:g}; damping must be 0 to {MAX_DAMPING:g}',
         )
 
 
@@ -237,8 +238,11 @@ def bitmask(element: etree._Element) -> int:
     try:
         return int(scalar(element), 0) & 0xFFFF
     except ValueError:
-        raise fault(element, f"<{tag_of(element)}> is '{scalar(element)[:60]}'; a bitmask is a "
-                    'number such as 3 or 0x03') from None
+        raise fault(
+            element,
+            f"<{tag_of(element)}> is '{scalar(element)[:60]}'; a bitmask is a "
+            'number such as 3 or 0x03',
+        ) from None
 
 
 def boolean(element: etree._Element) -> bool:

@@ -39,8 +39,7 @@ class Mass(NamedTuple):
     def scaled(self, factor: float) -> 'Mass':
         """Return this with mass and moments multiplied by a factor."""
         x, y, z = self.moments
-        return self._replace(
-            mass=factor * self.mass, moments=(factor * x, factor * y, factor * z))
+        return self._replace(mass=factor * self.mass, moments=(factor * x, factor * y, factor * z))
 
 
 class Masses(NamedTuple):
@@ -61,7 +60,8 @@ class Masses(NamedTuple):
         """Return these with all masses and moments multiplied by a factor."""
         return self._replace(
             parts=tuple(part.scaled(factor) for part in self.parts),
-            compliance=tuple(one / factor for one in self.compliance))
+            compliance=tuple(one / factor for one in self.compliance),
+        )
 
 
 class FrictionAxes(NamedTuple):

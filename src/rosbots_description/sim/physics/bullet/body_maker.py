@@ -28,20 +28,34 @@ def _masses(tree: Tree, body: Body, moments: Sequence[Vector]) -> Masses:
         for link, of_link in zip(tree.links, moments, strict=True)
         if link.inertial and not (tree.fixed_base and link is tree.links[0])
     )
-    movable = [(joint, link) for link, joint in zip(tree.links, tree.joints, strict=True)
-               if joint is not None and joint.type != FIXED]
+    movable = [
+        (joint, link)
+        for link, joint in zip(tree.links, tree.joints, strict=True)
+        if joint is not None and joint.type != FIXED
+    ]
     parents = {joint.parent for joint in tree.joints if joint}
     joints = tuple(body.joints[joint.name][1] for joint, _ in movable)
-    unbalanced = tuple(body.joints[joint.name][1] for joint, link in movable
-                       if link.name in parents or link.inertial is None
-                       or not is_balanced(link.inertial, joint))
-    links = {link.name: link for link in tree.links[tree.fixed_base:] if link.inertial}
-    given = [(joint.damping, joint.stiffness, joint.reference,
-              compliance(joint, link, links.get(joint.parent))
-              if joint.damping or joint.stiffness else 1.0) for joint, link in movable]
+    unbalanced = tuple(
+        body.joints[joint.name][1]
+        for joint, link in movable
+        if link.name in parents or link.inertial is None or not is_balanced(link.inertial, joint)
+    )
+    links = {link.name: link for link in tree.links[tree.fixed_base :] if link.inertial}
+    given = [
+        (
+            joint.damping,
+            joint.stiffness,
+            joint.reference,
+            compliance(joint, link, links.get(joint.parent))
+            if joint.damping or joint.stiffness
+            else 1.0,
+        )
+        for joint, link in movable
+    ]
     damping, stiffness, reference, compliances = zip(*given, strict=True) if given else ((),) * 4
-    return Masses(parts, joints, damping, stiffness, reference, compliances, unbalanced,
-                  tree.fixed_base)
+    return Masses(
+        parts, joints, damping, stiffness, reference, compliances, unbalanced, tree.fixed_base
+    )
 
 
 class BodyMaker:
@@ -121,7 +135,8 @@ class BodyMaker:
             body.masses[number] = _masses(tree, body, compiled.moments)
         for other, one in zip(also, compiled.bodies[1:], strict=True):
             self._set_contact_part(
-                body, tree.links[0].name, Place(other, -1), one.contact_parts[0][0])
+                body, tree.links[0].name, Place(other, -1), one.contact_parts[0][0]
+            )
 
     def exclude_collisions_within(self, body: Body, spec: ModelSpec) -> None:
         """Disable collisions between the links of a model that do not collide in Gazebo."""
@@ -154,9 +169,14 @@ class BodyMaker:
             for part in masses.parts:
                 # Two calls: the first one also sets moments, those of the shape.
                 pybullet.changeDynamics(
-                    number, part.link, mass=part.mass, physicsClientId=self._client)
-                pybullet.changeDynamics(number, part.link, localInertiaDiagonal=part.moments,
-                                        physicsClientId=self._client)
+                    number, part.link, mass=part.mass, physicsClientId=self._client
+                )
+                pybullet.changeDynamics(
+                    number,
+                    part.link,
+                    localInertiaDiagonal=part.moments,
+                    physicsClientId=self._client,
+                )
 
     def scale_link_friction(self, body: Body, link: str, factor: float) -> None:
         """Multiply the friction of each contact of a link by a factor."""
@@ -165,8 +185,8 @@ class BodyMaker:
             body.friction_scales[link] = factor
         for place in body.surfaces[link]:
             pybullet.changeDynamics(
-                *place, lateralFriction=factor * body.frictions[place],
-                physicsClientId=self._client)
+                *place, lateralFriction=factor * body.frictions[place], physicsClientId=self._client
+            )
 
     def reset(self) -> None:
         """Remove everything."""

@@ -101,8 +101,9 @@ class BodyStates:
         for number in {part.body: None for part in body.parts.values()}:
             mine = [(name, part) for name, part in body.parts.items() if part.body == number]
             indices = [part.index for _, part in mine if part.index >= 0]
-            rows = iter(pybullet.getLinkStates(number, indices, 1, 1, self._client)
-                        if indices else ())
+            rows = iter(
+                pybullet.getLinkStates(number, indices, 1, 1, self._client) if indices else ()
+            )
             for name, part in mine:
                 if part.index < 0:
                     states[name] = self.link_state(body, name)
@@ -148,9 +149,7 @@ class BodyStates:
             axes[root] = placement.axes
         return axes
 
-    def match_poses(
-        self, body: Body, axes: Mapping[str, Pose], links: Mapping[str, Pose]
-    ) -> None:
+    def match_poses(self, body: Body, axes: Mapping[str, Pose], links: Mapping[str, Pose]) -> None:
         """Move roots by rounding errors so that principal axes and links are these again."""
         self.placements += 1
         for root in (root for root in body.roots if root in axes):
@@ -159,8 +158,9 @@ class BodyStates:
 
     def _placement(self, body: Body, root: str, links: Iterable[str]) -> ExactPlacement:
         names = [name for name in links if self._is_of(body, name, root)]
-        return ExactPlacement(self._client, body.parts[root],
-                              lambda: [self.link_pose(body, name) for name in names])
+        return ExactPlacement(
+            self._client, body.parts[root], lambda: [self.link_pose(body, name) for name in names]
+        )
 
     def _is_of(self, body: Body, link: str, root: str) -> bool:
         """Tell whether a link depends on a root."""
@@ -285,8 +285,11 @@ class BodyStates:
         """Return the wrench of the parent on the child through a joint in the last step."""
         # PyBullet reports it in the principal axes of the child, without the motor's effort.
         values = self._joint_reading(body, joint)[2]
-        turn = next(part.com_in_origin.orientation for part in body.parts.values()
-                    if (part.body, part.index) == body.joints[joint])
+        turn = next(
+            part.com_in_origin.orientation
+            for part in body.parts.values()
+            if (part.body, part.index) == body.joints[joint]
+        )
         force, torque = rotate(turn, values[:3]), rotate(turn, values[3:])
         if not any(values):
             return Wrench(force, torque)

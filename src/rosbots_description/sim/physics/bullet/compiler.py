@@ -106,25 +106,34 @@ def compile_model(spec: ModelSpec, meshes: EngineFiles) -> BulletModel:
 
 def _require(spec: ModelSpec, excess: str | None) -> None:
     if excess:
-        raise ModelError(f"{spec.location or f'model {spec.name!r}'}: {excess}")
+        raise ModelError(f'{spec.location or f"model {spec.name!r}"}: {excess}')
 
 
 def _compiled_tree(tree: Tree, groups: list[Groups], mesh_file: MeshFile) -> CompiledTree:
     inertials = [link.inertial or _MASSLESS for link in tree.links]
     moments, axes = zip(*map(principal_axes, inertials), strict=True)
-    coms = tuple(Pose(inertial.pose.position, orientation)
-                 for inertial, orientation in zip(inertials, axes, strict=True))
+    coms = tuple(
+        Pose(inertial.pose.position, orientation)
+        for inertial, orientation in zip(inertials, axes, strict=True)
+    )
     split = [with_split_edges(tree, groups[0]), *groups[1:]]
     found = contact_parts(tree, split, MAX_JOINTS + 1)
     # Each part of a static tree is a body of its own.
     bodies = [[[part]] for part in (*found[0], *slab(tree))] if tree.is_static else [found]
-    return CompiledTree(tree, moments, coms, tuple(
-        CompiledBody(
-            describe_tree(tree, coms, [[part.shapes for part in of_link] for of_link in body],
-                          mesh_file),
-            _compiled_contact_parts(tree, coms, body),
-        ) for body in bodies
-    ))
+    return CompiledTree(
+        tree,
+        moments,
+        coms,
+        tuple(
+            CompiledBody(
+                describe_tree(
+                    tree, coms, [[part.shapes for part in of_link] for of_link in body], mesh_file
+                ),
+                _compiled_contact_parts(tree, coms, body),
+            )
+            for body in bodies
+        ),
+    )
 
 
 def _compiled_contact_parts(
@@ -136,10 +145,12 @@ def _compiled_contact_parts(
     for link, joint, com, of_link in zip(tree.links, tree.joints, coms, body, strict=True):
         # An auxiliary link has the frame of its link's parent joint.
         auxiliary = joint.pose.orientation if joint else NO_ROTATION
-        compiled.append(tuple(
-            _compiled_contact_part(part, link, joint, mass, auxiliary if k else com.orientation)
-            for k, part in enumerate(of_link)
-        ))
+        compiled.append(
+            tuple(
+                _compiled_contact_part(part, link, joint, mass, auxiliary if k else com.orientation)
+                for k, part in enumerate(of_link)
+            )
+        )
     return tuple(compiled)
 
 

@@ -29,9 +29,7 @@ class ContactPart(NamedTuple):
     friction: float
 
 
-def contact_parts(
-    tree: Tree, groups: Sequence[Groups], max_parts: int
-) -> list[list[ContactPart]]:
+def contact_parts(tree: Tree, groups: Sequence[Groups], max_parts: int) -> list[list[ContactPart]]:
     """Return the contact parts of each link of a tree; the first one is on the link itself.
 
     Args:
@@ -40,8 +38,10 @@ def contact_parts(
             of a pair with both mu < 1 is mu1 * mu2 instead of min(mu1, mu2).
     """
     kinds = [_kind(tree, i) for i in range(len(groups))]
-    found = [[part for group in of_link for part in _in_roles(group, kind, tree.is_static)]
-             for kind, of_link in zip(kinds, groups, strict=True)]
+    found = [
+        [part for group in of_link for part in _in_roles(group, kind, tree.is_static)]
+        for kind, of_link in zip(kinds, groups, strict=True)
+    ]
     if sum(map(len, found)) <= max_parts:
         return found
     return [[*{part.shapes: _in_both(part) for part in of_link}.values()] for of_link in found]
@@ -59,7 +59,8 @@ def slab(tree: Tree) -> list[ContactPart]:
     below = Pose((0.0, 0.0, -_SLAB.size[2] / 2.0))
     shapes = tuple(
         replace(one, geometry=_SLAB, pose=compose(compose(one.pose, _tilt(one.geometry)), below))
-        for one in tree.links[0].collisions if isinstance(one.geometry, Plane)
+        for one in tree.links[0].collisions
+        if isinstance(one.geometry, Plane)
     )
     return _in_roles(shapes, Kind.SLAB, is_static=True)
 
@@ -79,8 +80,10 @@ def _kind(tree: Tree, i: int) -> Kind:
 
 def _in_roles(group: tuple[Collision, ...], kind: Kind, is_static: bool) -> list[ContactPart]:
     mu = coefficient(group[0].surface.greatest_mu) if group else 1.0
-    return [ContactPart(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
-            for role in roles(mu, is_static)]
+    return [
+        ContactPart(group, Side(kind, role, mu), mu if role is Role.OWN else 1.0)
+        for role in roles(mu, is_static)
+    ]
 
 
 def _in_both(part: ContactPart) -> ContactPart:

@@ -63,35 +63,50 @@ class ContactQueries:
             if distance > 0.0 and load <= 0.0:
                 continue  # near, but not touching
             one, other = Place(a, index_a), Place(b, index_b)
-            force = tuple(load * n + friction[0] * p + friction[2] * q
-                          for n, p, q in zip(normal, friction[1], friction[3], strict=True))
+            force = tuple(
+                load * n + friction[0] * p + friction[2] * q
+                for n, p, q in zip(normal, friction[1], friction[3], strict=True)
+            )
             if not self._is_of(one, body, link):
                 if not self._is_of(other, body, link):
                     continue
                 one, other, on_a, on_b = other, one, on_b, on_a
                 normal, force = (tuple(-x for x in vector) for vector in (normal, force))
-            found.append(Contact(
-                self._name(one, on_a), self._name(other, on_b), on_a, normal, -distance, force))
+            found.append(
+                Contact(
+                    self._name(one, on_a), self._name(other, on_b), on_a, normal, -distance, force
+                )
+            )
         return found
 
     def extent(self, body: Body) -> float:
         """Return the longest side of a model's bounding box [m]; see `PhysicsEngine.extent`."""
-        if any(isinstance(one.geometry, Plane) for shapes in body.shapes.values()
-               for one in shapes):
+        if any(
+            isinstance(one.geometry, Plane) for shapes in body.shapes.values() for one in shapes
+        ):
             return math.inf
-        boxes = [pybullet.getAABB(*place, self._client)
-                 for place, shapes in body.shapes.items() if shapes]
+        boxes = [
+            pybullet.getAABB(*place, self._client)
+            for place, shapes in body.shapes.items()
+            if shapes
+        ]
         if not boxes:
             return 0.0
-        return float(max(max(high[axis] for _, high in boxes) - min(low[axis] for low, _ in boxes)
-                         for axis in range(3)))
+        return float(
+            max(
+                max(high[axis] for _, high in boxes) - min(low[axis] for low, _ in boxes)
+                for axis in range(3)
+            )
+        )
 
     def touching(self, body: Body) -> set[Body]:
         """Return the bodies that touched a body in the last step; not itself."""
-        return {self._owners[Place(point[2], point[4])][0]
-                for number in body.bodies
-                for point in pybullet.getContactPoints(number, physicsClientId=self._client)
-                if point[8] <= 0.0 or point[9] > 0.0} - {body}
+        return {
+            self._owners[Place(point[2], point[4])][0]
+            for number in body.bodies
+            for point in pybullet.getContactPoints(number, physicsClientId=self._client)
+            if point[8] <= 0.0 or point[9] > 0.0
+        } - {body}
 
     def _is_of(self, place: Place, body: Body | None, link: str | None) -> bool:
         owner, name = self._owners[place]
@@ -133,14 +148,17 @@ class ContactQueries:
             case Cylinder(radius, length):
                 high = np.array([radius, radius, length / 2.0])
                 low = -high
-        turned = [rotate(shape.pose.orientation, corner)
-                  for corner in itertools.product(*zip(low, high, strict=True))]
+        turned = [
+            rotate(shape.pose.orientation, corner)
+            for corner in itertools.product(*zip(low, high, strict=True))
+        ]
         return np.add([np.min(turned, axis=0), np.max(turned, axis=0)], shape.pose.position)
 
     def _distance(self, shape: Collision, point: Vector) -> float:
         """Return the signed distance of a point in the link's frame to a shape's surface [m]."""
-        x, y, z = local = rotate(conjugate(shape.pose.orientation),
-                                 subtract(point, shape.pose.position))
+        x, y, z = local = rotate(
+            conjugate(shape.pose.orientation), subtract(point, shape.pose.position)
+        )
         match shape.geometry:
             case Sphere(radius):
                 return math.hypot(x, y, z) - radius

@@ -55,9 +55,11 @@ class Engine(BodyStates):
         self._springs = Springs(self._client)
         self._weightless: list[Body] = []  # bodies with links without gravity
         self._slipping = SlippingLinks(
-            self._client, self._maker.scale_friction, self._friction_ratio)
-        self._queries = ContactQueries(self._client, self.link_pose,
-                                          partial(self._meshes.engine_file, exact=False))
+            self._client, self._maker.scale_friction, self._friction_ratio
+        )
+        self._queries = ContactQueries(
+            self._client, self.link_pose, partial(self._meshes.engine_file, exact=False)
+        )
         self._snapshots = Snapshots(self._client)
         # Bytes that removed bodies were loaded from; PyBullet does not free all of its memory.
         self._leaked = 0
@@ -107,7 +109,8 @@ class Engine(BodyStates):
         self._snapshots.clear()
         self._maker.reset()
         pybullet.setPhysicsEngineParameter(
-            deterministicOverlappingPairs=0, physicsClientId=self._client)
+            deterministicOverlappingPairs=0, physicsClientId=self._client
+        )
         self._bodies.clear()
         self._applied_forces.clear()
         self._queries.clear()
@@ -237,10 +240,17 @@ class Engine(BodyStates):
 
     def overlap(self, one: Body, other: Body) -> float:
         """Return the penetration depth of two models [m]; 0 if they do not overlap."""
-        depth = max((
-            -point[8] for first in one.bodies for second in other.bodies
-            for point in pybullet.getClosestPoints(first, second, 0.0, physicsClientId=self._client)
-        ), default=0.0)
+        depth = max(
+            (
+                -point[8]
+                for first in one.bodies
+                for second in other.bodies
+                for point in pybullet.getClosestPoints(
+                    first, second, 0.0, physicsClientId=self._client
+                )
+            ),
+            default=0.0,
+        )
         return depth if depth > _TOUCHES else 0.0
 
     def can_slip(self, body: Body, link: str, axis: Vector) -> bool:
@@ -277,15 +287,23 @@ class Engine(BodyStates):
             return measured
         beyond = links_beyond(self._client, number, index)
         names = {part.index: name for name, part in body.parts.items() if part.body == number}
-        touches = [contact for link in beyond if link in names
-                   for contact in self.contacts(body, names[link])]
+        touches = [
+            contact
+            for link in beyond
+            if link in names
+            for contact in self.contacts(body, names[link])
+        ]
         frame = self.link_pose(body, names[index])
         return with_stop(self._client, number, beyond, frame, axis, measured, touches)
 
     def snapshot(self) -> BulletSnapshot:
         """Return a snapshot of the whole state, between two steps."""
-        idle = [body.joints[joint] for body in self._driven
-                for joint, (_, effort) in body.motors.items() if not effort]
+        idle = [
+            body.joints[joint]
+            for body in self._driven
+            for joint, (_, effort) in body.motors.items()
+            if not effort
+        ]
         snapshot = self._snapshots.take([*self._bodies], self._moving(), idle, self._save_state)
         self._restore_state(snapshot.engine_state)
         return snapshot
@@ -314,8 +332,13 @@ class Engine(BodyStates):
             for joint in body.joints:
                 self._joint_reading(body, joint)  # PyBullet does not restore efforts
         return (
-            self._physics, self._until_check, self._effort.save_state(), self._fast.save_state(),
-            self._slipping.save_state(), list(self._applied_forces), dict(self._joint_readings),
+            self._physics,
+            self._until_check,
+            self._effort.save_state(),
+            self._fast.save_state(),
+            self._slipping.save_state(),
+            list(self._applied_forces),
+            dict(self._joint_readings),
             [(body, dict(body.motors)) for body in self._driven],
             [(body, (body.mass_scale, dict(body.friction_scales))) for body in self._bodies],
         )
@@ -340,9 +363,7 @@ class Engine(BodyStates):
         self._slipping.restore_state(slipping)
 
     def _set_iterations(self, count: int) -> None:
-        pybullet.setPhysicsEngineParameter(
-            numSolverIterations=count, physicsClientId=self._client
-        )
+        pybullet.setPhysicsEngineParameter(numSolverIterations=count, physicsClientId=self._client)
 
     def _cancel_weight(self) -> None:
         """Cancel the weight of links without gravity; PyBullet has one gravity for all links."""

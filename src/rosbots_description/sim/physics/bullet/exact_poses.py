@@ -23,9 +23,7 @@ _ROUNDING = 1e-9  # [m], and of half an angle [rad]: more is another pose
 class ExactPlacement:
     """One root of a body with the links that depend on it."""
 
-    def __init__(
-        self, client: int, part: Part, read_links: Callable[[], Sequence[Pose]]
-    ) -> None:
+    def __init__(self, client: int, part: Part, read_links: Callable[[], Sequence[Pose]]) -> None:
         self._client, self._body, self._read_links = client, part.body, read_links
         self._bodies = (part.body, *part.also)
         self._velocity = pybullet.getBaseVelocity(part.body, client)
@@ -70,12 +68,14 @@ def _near(q: Quaternion) -> Iterator[Quaternion]:
     """Yield the quaternions next to one, the nearest first."""
     around = [[_moved(x, steps) for steps in range(-NEAR, NEAR + 1)] for x in q]
     for moves in _MOVES:
-        yield as_quaternion(numbers[NEAR + steps]
-                            for numbers, steps in zip(around, moves, strict=True))
+        yield as_quaternion(
+            numbers[NEAR + steps] for numbers, steps in zip(around, moves, strict=True)
+        )
 
 
-_MOVES = sorted(itertools.product(range(-NEAR, NEAR + 1), repeat=4),
-                key=lambda moves: sum(map(abs, moves)))
+_MOVES = sorted(
+    itertools.product(range(-NEAR, NEAR + 1), repeat=4), key=lambda moves: sum(map(abs, moves))
+)
 
 
 def _moved(x: float, steps: int) -> float:

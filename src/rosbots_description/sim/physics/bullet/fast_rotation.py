@@ -154,13 +154,23 @@ class _FastBody:
     @property
     def state(self) -> tuple[Any, ...]:
         """Return what changes from step to step."""
-        return (self.peak_kinetic, self.energy_limit, self.is_airborne, self.total_energy,
-                self.slow_checks)
+        return (
+            self.peak_kinetic,
+            self.energy_limit,
+            self.is_airborne,
+            self.total_energy,
+            self.slow_checks,
+        )
 
     @state.setter
     def state(self, state: tuple[Any, ...]) -> None:
-        (self.peak_kinetic, self.energy_limit, self.is_airborne, self.total_energy,
-         self.slow_checks) = state
+        (
+            self.peak_kinetic,
+            self.energy_limit,
+            self.is_airborne,
+            self.total_energy,
+            self.slow_checks,
+        ) = state
 
     def limit_energy(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
         """Remove energy that the last step added without work."""
@@ -186,9 +196,7 @@ class _FastBody:
                 self.energy_limit = own
         self.total_energy = total
 
-    def _energy(
-        self, step_size: float, gravity: Vector
-    ) -> tuple[float, float, float, FloatArray]:
+    def _energy(self, step_size: float, gravity: Vector) -> tuple[float, float, float, FloatArray]:
         """Return three energies [J], and the velocity of the centre of mass [m/s].
 
         The energies are: total; without height and velocity of the centre of mass; and the kinetic
@@ -210,8 +218,10 @@ class _FastBody:
             drift = (self._mass[:, None] * linear).sum(axis=0) / whole
             energy += 0.5 * whole * float((drift * drift).sum())
         linear = linear - drift
-        kinetic = 0.5 * float((self._mass[:, None] * linear * linear).sum()
-                              + (self._moments * turning * turning).sum())
+        kinetic = 0.5 * float(
+            (self._mass[:, None] * linear * linear).sum()
+            + (self._moments * turning * turning).sum()
+        )
         own = kinetic + self._spring_energy(step_size)
         return energy + own, own, kinetic, drift
 
@@ -220,11 +230,17 @@ class _FastBody:
         if not any(self._all.stiffness):
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
-        return float(sum(
-            0.5 * stiffness * (state[0] - 0.5 * step_size * state[1] - reference) ** 2
-            for state, stiffness, reference in zip(
-                states, followed_stiffness(self._all, step_size), self._all.reference, strict=True)
-        ))
+        return float(
+            sum(
+                0.5 * stiffness * (state[0] - 0.5 * step_size * state[1] - reference) ** 2
+                for state, stiffness, reference in zip(
+                    states,
+                    followed_stiffness(self._all, step_size),
+                    self._all.reference,
+                    strict=True,
+                )
+            )
+        )
 
     def _work(self, step_size: float) -> float:
         """Return the work of motors and dampers in the last step [J]."""
@@ -232,8 +248,9 @@ class _FastBody:
             return 0.0
         states = pybullet.getJointStates(self._number, self._all.joints, self._client)
         pairs = zip(states, followed_damping(self._all, step_size), strict=True)
-        return step_size * float(sum(speed * (effort - damping * speed)
-                                     for (_, speed, _, effort), damping in pairs))
+        return step_size * float(
+            sum(speed * (effort - damping * speed) for (_, speed, _, effort), damping in pairs)
+        )
 
     def bodies_in_contact(self) -> set[int]:
         """Return the numbers of the bodies that touch this one."""

@@ -72,31 +72,49 @@ class SlippingLinks:
     def restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore the state of a note; the bodies must be the same."""
         links, scales = saved
-        whole = {place: axes.scales for body, _, _ in (*self.links, *links)
-                 for place, axes in body.friction_axes.items()}
+        whole = {
+            place: axes.scales
+            for body, _, _ in (*self.links, *links)
+            for place, axes in body.friction_axes.items()
+        }
         for place in self._scales:
             self._scale(place, scales.get(place, whole.get(place, ISOTROPIC)))
         self.links, self._scales = list(links), dict(scales)
 
     def update_friction(
-        self, body: Body, link: str, state: tuple[Pose, Twist], axle: Vector,
-        slips: tuple[float, float], step_size: float,
+        self,
+        body: Body,
+        link: str,
+        state: tuple[Pose, Twist],
+        axle: Vector,
+        slips: tuple[float, float],
+        step_size: float,
     ) -> None:
         """Scale the friction of a link for the next step; arguments as in `links`."""
         pose, twist = state
         for place in body.surfaces[link]:
-            scales = FULL_FRICTION if not any(slips) else slip_scales(
-                self._contacts(place, pose.position, twist), rotate(pose.orientation, axle), slips,
-                step_size, self._friction_ratio,
+            scales = (
+                FULL_FRICTION
+                if not any(slips)
+                else slip_scales(
+                    self._contacts(place, pose.position, twist),
+                    rotate(pose.orientation, axle),
+                    slips,
+                    step_size,
+                    self._friction_ratio,
+                )
             )
             if scales is None:
                 continue
             axes = body.friction_axes[place]
             along, ahead = scales
-            self._scale(place, tuple(
-                scale * (along if is_axle else ahead)
-                for is_axle, scale in zip(axes_along(axes, axle), axes.scales, strict=True)
-            ))
+            self._scale(
+                place,
+                tuple(
+                    scale * (along if is_axle else ahead)
+                    for is_axle, scale in zip(axes_along(axes, axle), axes.scales, strict=True)
+                ),
+            )
 
     def _scale(self, place: Place, scales: tuple[float, ...]) -> None:
         self._scales[place] = scales
@@ -108,8 +126,16 @@ class SlippingLinks:
         client = self._client
         points = pybullet.getContactPoints(number, linkIndexA=index, physicsClientId=client)
         # PyBullet reports friction on the first body of a pair, normals on the queried one.
-        as_second = {point[6] for point in pybullet.getContactPoints(
-            bodyB=number, linkIndexB=index, physicsClientId=client)} if points else ()
+        as_second = (
+            {
+                point[6]
+                for point in pybullet.getContactPoints(
+                    bodyB=number, linkIndexB=index, physicsClientId=client
+                )
+            }
+            if points
+            else ()
+        )
         for point in points:
             other, position, normal, load = (point[2], point[4]), point[5], point[7], point[9]
             along, one, across, two = point[10:14]
@@ -118,7 +144,11 @@ class SlippingLinks:
             own = velocity_at(position, origin, *twist)
             mu = (pybullet.getDynamicsInfo(*each, client)[1] for each in (place, other))
             yield TyreContact(
-                position, normal, load, (x, y, z), subtract(own, self._velocity(*other, position)),
+                position,
+                normal,
+                load,
+                (x, y, z),
+                subtract(own, self._velocity(*other, position)),
                 load * math.prod(mu),
             )
 

@@ -29,7 +29,10 @@ class TyreContact(NamedTuple):
 
 
 def slip_scales(
-    contacts: Iterable[TyreContact], axle: Vector, slips: tuple[float, float], step_size: float,
+    contacts: Iterable[TyreContact],
+    axle: Vector,
+    slips: tuple[float, float],
+    step_size: float,
     friction_ratio: Callable[[Vector], float],
 ) -> tuple[float, float] | None:
     """Return the friction scales of a tyre along the axle and ahead; None without contact.

@@ -117,8 +117,11 @@ def _link(
         # Exact surfaces only if static: moving concave meshes are slow and can be penetrated.
         concave = ' concave="yes"' if mass == 0.0 and isinstance(collision.geometry, Mesh) else ''
         group = f' group="{_LOADED}"' if mass else ''
-        lines += [f'<collision{group}{concave}>', _origin(compose(back, collision.pose)),
-                  '<geometry>']
+        lines += [
+            f'<collision{group}{concave}>',
+            _origin(compose(back, collision.pose)),
+            '<geometry>',
+        ]
         lines += [_geometry(collision.geometry, mesh_file), '</geometry>', '</collision>']
     lines.append('</link>')
     return lines

@@ -57,9 +57,7 @@ def is_mobile(tree: Tree) -> bool:
     return any(joint is not None and joint.type != FIXED for joint in tree.joints)
 
 
-def crowned(
-    collision: Collision, link: LinkSpec, joint: JointSpec | None
-) -> tuple[Collision, ...]:
+def crowned(collision: Collision, link: LinkSpec, joint: JointSpec | None) -> tuple[Collision, ...]:
     """Return the shapes of a collision: a level wheel gets a crowned profile, others stay.
 
     A cylinder touches a floor along a line, of which PyBullet finds one end. The crowned profile
@@ -77,8 +75,10 @@ def crowned(
     rim = Cylinder(wheel.radius, min(_CREST, wheel.length))
     apart = (wheel.length - rim.length) / 2.0
     return (
-        *(replace(collision, geometry=rim, pose=compose(collision.pose, Pose((0.0, 0.0, z))))
-          for z in ((-apart, 0.0, apart) if apart else (0.0,))),
+        *(
+            replace(collision, geometry=rim, pose=compose(collision.pose, Pose((0.0, 0.0, z))))
+            for z in ((-apart, 0.0, apart) if apart else (0.0,))
+        ),
         replace(collision, geometry=Cylinder(shoulders, wheel.length)),
     )
 
@@ -119,7 +119,13 @@ def _by_surface(collisions: Sequence[Collision]) -> list[tuple[Collision, ...]]:
     groups: dict[tuple[Any, ...], list[Collision]] = {}
     for collision in collisions:
         surface = collision.surface
-        key = (surface.kp, surface.kd, restitution(surface), directions(collision),
-               surface.collide_bitmask, surface.category_bitmask)
+        key = (
+            surface.kp,
+            surface.kd,
+            restitution(surface),
+            directions(collision),
+            surface.collide_bitmask,
+            surface.category_bitmask,
+        )
         groups.setdefault((surface.greatest_mu, *key), []).append(collision)
     return [tuple(group) for group in groups.values()]

@@ -53,7 +53,10 @@ class Snapshots:
         self._states = set()
 
     def take(
-        self, bodies: Sequence[Any], moving: Sequence[int], idle: Joints,
+        self,
+        bodies: Sequence[Any],
+        moving: Sequence[int],
+        idle: Joints,
         save_state: Callable[[], tuple[Any, ...]],
     ) -> BulletSnapshot:
         """Return a snapshot.
@@ -76,10 +79,13 @@ class Snapshots:
     def require(self, snapshot: BulletSnapshot, bodies: Sequence[Any]) -> None:
         """Raise a `SimError` if the bodies are not those of a snapshot."""
         same = len(bodies) == len(snapshot.bodies) and all(
-            a is b for a, b in zip(bodies, snapshot.bodies, strict=True))
+            a is b for a, b in zip(bodies, snapshot.bodies, strict=True)
+        )
         if not same or snapshot.state not in self._states:
-            raise SimError('the snapshot is of other models: none may be added, removed or changed '
-                           'between taking a snapshot and going back to it; take a new one')
+            raise SimError(
+                'the snapshot is of other models: none may be added, removed or changed '
+                'between taking a snapshot and going back to it; take a new one'
+            )
 
     def restore(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> tuple[Any, ...]:
         """Restore PyBullet's part of a snapshot, and return the engine's own."""
@@ -106,7 +112,8 @@ class Snapshots:
     def _set_effort(self, joints: Joints, effort: float) -> None:
         for joint in joints:
             pybullet.setJointMotorControl2(
-                *joint, pybullet.VELOCITY_CONTROL, force=effort, physicsClientId=self._client)
+                *joint, pybullet.VELOCITY_CONTROL, force=effort, physicsClientId=self._client
+            )
 
 
 def _drop(states: set[int], state: int, client: int) -> None:

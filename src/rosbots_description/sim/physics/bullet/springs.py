@@ -51,7 +51,8 @@ class Springs:
             sprung = [i for i, value in enumerate(stiffness) if value]
             if sprung:
                 self._springs[number] = (
-                    [masses.joints[i] for i in sprung], [stiffness[i] for i in sprung],
+                    [masses.joints[i] for i in sprung],
+                    [stiffness[i] for i in sprung],
                     [masses.reference[i] for i in sprung],
                 )
             for index, damping in zip(
@@ -77,9 +78,13 @@ class Springs:
         for number, (joints, stiffness, reference) in self._springs.items():
             states = pybullet.getJointStates(number, joints, self._client)
             pybullet.setJointMotorControlArray(
-                number, joints, pybullet.TORQUE_CONTROL,
-                forces=[k * (rest - state[0])
-                        for k, rest, state in zip(stiffness, reference, states, strict=True)],
+                number,
+                joints,
+                pybullet.TORQUE_CONTROL,
+                forces=[
+                    k * (rest - state[0])
+                    for k, rest, state in zip(stiffness, reference, states, strict=True)
+                ],
                 physicsClientId=self._client,
             )
 

@@ -26,7 +26,12 @@ def links_beyond(client: int, number: int, index: int) -> list[int]:
 
 
 def with_stop(
-    client: int, number: int, links: list[int], frame: Pose, axis: Vector, measured: Wrench,
+    client: int,
+    number: int,
+    links: list[int],
+    frame: Pose,
+    axis: Vector,
+    measured: Wrench,
     contacts: Iterable[Contact],
 ) -> Wrench:
     """Return the reaction of a joint at its stop, with its whole torque about the axis.
@@ -45,7 +50,8 @@ def with_stop(
     for link in links:
         share = pybullet.getDynamicsInfo(number, link, client)[0]
         x, y, z = pybullet.getLinkState(
-            number, link, computeForwardKinematics=True, physicsClientId=client)[0]
+            number, link, computeForwardKinematics=True, physicsClientId=client
+        )[0]
         mass, moment = mass + share, add(moment, (share * x, share * y, share * z))
     if not mass:
         return measured
@@ -58,5 +64,4 @@ def with_stop(
     torque = add(torque, cross(lever, force))
     missing = dot(torque, rotate(frame.orientation, axis)) - dot(measured.torque, axis)
     x, y, z = axis
-    return Wrench(
-        measured.force, add(measured.torque, (missing * x, missing * y, missing * z)))
+    return Wrench(measured.force, add(measured.torque, (missing * x, missing * y, missing * z)))

@@ -15,6 +15,11 @@ from .skid_steer_drive import SkidSteerDrive
 from .tricycle_drive import TricycleDrive
 
 __all__ = [
-    'DiffDrive', 'Drive', 'ForceBasedMove', 'PlanarMove', 'RidgebackForceBasedMove',
-    'SkidSteerDrive', 'TricycleDrive',
+    'DiffDrive',
+    'Drive',
+    'ForceBasedMove',
+    'PlanarMove',
+    'RidgebackForceBasedMove',
+    'SkidSteerDrive',
+    'TricycleDrive',
 ]

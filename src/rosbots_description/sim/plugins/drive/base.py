@@ -37,15 +37,20 @@ class Drive(PeriodicPlugin):
 
     def read_frames(self, base: str) -> None:
         """Read the names of topics and frames; the robot's frame is `base` by default."""
-        for tag, default in (('commandTopic', 'cmd_vel'), ('odometryTopic', 'odom'),
-                             ('odometryFrame', 'odom'), ('robotBaseFrame', base)):
+        for tag, default in (
+            ('commandTopic', 'cmd_vel'),
+            ('odometryTopic', 'odom'),
+            ('odometryFrame', 'odom'),
+            ('robotBaseFrame', base),
+        ):
             self.params.read(tag, default)
 
     def add_odometry(self, message: bool = True, transform: bool = True) -> None:
         """Create the outputs of odometry and of its transform, if they are requested."""
         self.odometry: Output[Odometry] = self.output('odometry', message)
         self.odometry_transform: Output[FrameTransform] = self.output(
-            'odometry_transform', transform)
+            'odometry_transform', transform
+        )
 
     @property
     def odometry_wanted(self) -> bool:
@@ -61,7 +66,8 @@ class Drive(PeriodicPlugin):
         if self.odometry_transform.wanted:
             string = self.params.string
             self.odometry_transform.send(
-                FrameTransform(string('odometryFrame'), string('robotBaseFrame'), reading.pose))
+                FrameTransform(string('odometryFrame'), string('robotBaseFrame'), reading.pose)
+            )
         if self.odometry.wanted:
             if flat:
                 (x, y, _), orientation = reading.pose
@@ -86,7 +92,8 @@ class Drive(PeriodicPlugin):
         if not all(map(math.isfinite, (linear_x, angular_z, linear_y))):
             raise ValueError(
                 f'a velocity command takes finite numbers; it got linear_x {linear_x}, '
-                f'angular_z {angular_z}, linear_y {linear_y}')
+                f'angular_z {angular_z}, linear_y {linear_y}'
+            )
         self.target = (linear_x, linear_y, angular_z)
 
 
@@ -147,7 +154,8 @@ class WheeledDrive(Drive):
         """Return the transform of a joint's child link in the model's frame, the parent."""
         pose = self.model.links[joint.spec.child].pose
         return FrameTransform(
-            joint.spec.parent, joint.spec.child, compose(inverse(model_pose), pose))
+            joint.spec.parent, joint.spec.child, compose(inverse(model_pose), pose)
+        )
 
 
 def reads_encoders(params: Params) -> bool:

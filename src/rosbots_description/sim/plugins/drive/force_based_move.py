@@ -35,8 +35,10 @@ class ForceBasedMove(Drive):
         """Read all tags with upstream's defaults and in upstream's order; find the link."""
         self.read_frames('base_footprint')
         self._pushed, _ = self.link('robotBaseFrame', self.params.string('robotBaseFrame'))
-        self._gains = tuple(self._gain(f'{axis}_velocity_p_gain', default) for axis, default in (
-            ('x', 10000.0), ('y', 10000.0), ('yaw', 100.0)))  # [N s/m], [N s/m], [N m s/rad]
+        self._gains = tuple(
+            self._gain(f'{axis}_velocity_p_gain', default)
+            for axis, default in (('x', 10000.0), ('y', 10000.0), ('yaw', 100.0))
+        )  # [N s/m], [N s/m], [N m s/rad]
         rate = self.params.rate('odometryRate', 20.0)  # 0 for none
         self.set_rate(rate)
         self.add_odometry(rate > 0.0, self.params.read('publishOdometryTf', True) and rate > 0.0)
@@ -60,8 +62,10 @@ class ForceBasedMove(Drive):
             self.target = (0.0, 0.0, 0.0)
         pose, twist = self.model.state()
         (x, y, _), (_, _, yaw_rate) = world_odometry(pose, twist).twist
-        along, across, about = (gain * (wanted - now) for gain, wanted, now in zip(
-            self._gains, self.target, (x, y, yaw_rate), strict=True))
+        along, across, about = (
+            gain * (wanted - now)
+            for gain, wanted, now in zip(self._gains, self.target, (x, y, yaw_rate), strict=True)
+        )
         force = rotate(self._pushed.pose.orientation, (along, across, 0.0))
         self._pushed.apply_wrench(force, (0.0, 0.0, about))
 

@@ -26,7 +26,11 @@ class Encoders:
     """
 
     def __init__(
-        self, left: 'Joint', right: 'Joint', diameter: float, separation: float,
+        self,
+        left: 'Joint',
+        right: 'Joint',
+        diameter: float,
+        separation: float,
         turning: float = 1.0,
     ) -> None:
         """Use these wheels of that diameter and separation [m]; call `reset` to start.

@@ -34,8 +34,9 @@ class Force(ModelPlugin):
             ValueError: a number is not finite.
         """
         if not all(map(math.isfinite, (*force, *torque))):
-            raise ValueError(f'a wrench takes finite numbers; it got force {force}, '
-                             f'torque {torque}')
+            raise ValueError(
+                f'a wrench takes finite numbers; it got force {force}, torque {torque}'
+            )
         self.wrench = (force, torque)
         self.reset()
 

@@ -51,8 +51,9 @@ class HandOfGod(ModelPlugin):
         if min(self.stiffness, self.angular_stiffness) < 0.0:
             raise PluginError(f'{self.log_prefix}<kl> and <ka> must not be negative')
         self._inertial = spec.inertial
-        links = tuple(replace(one, gravity=False) if one is spec else one
-                      for one in self.model.spec.links)
+        links = tuple(
+            replace(one, gravity=False) if one is spec else one for one in self.model.spec.links
+        )
         self.model.respecify(replace(self.model.spec, links=links))
         self.actual: Output[FrameTransform] = self.output('actual')
 
@@ -78,12 +79,20 @@ class HandOfGod(ModelPlugin):
         pose, (linear, angular) = self._link.state()
         target, inertial = compose(self.target, inverse(self._mount)), self._inertial
         force = self._spring(
-            subtract(target.position, pose.position), linear, self.stiffness,
-            inertial.mass, inertial.mass)
+            subtract(target.position, pose.position),
+            linear,
+            self.stiffness,
+            inertial.mass,
+            inertial.mass,
+        )
         back = conjugate(pose.orientation)
         torque = self._spring(
-            _half_rotation(multiply(back, target.orientation)), rotate(back, angular),
-            self.angular_stiffness, inertial.ixx, min(inertial.ixx, inertial.iyy, inertial.izz))
+            _half_rotation(multiply(back, target.orientation)),
+            rotate(back, angular),
+            self.angular_stiffness,
+            inertial.ixx,
+            min(inertial.ixx, inertial.iyy, inertial.izz),
+        )
         self._link.apply_wrench(force, rotate(pose.orientation, torque))
         self.runs_after_step, self.due = self.is_read, self.world.clock.steps + 1
 

@@ -20,8 +20,12 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
-NUMBERS = ('slip_compliance_lateral', 'slip_compliance_longitudinal', 'wheel_normal_force',
-           'wheel_radius')
+NUMBERS = (
+    'slip_compliance_lateral',
+    'slip_compliance_longitudinal',
+    'wheel_normal_force',
+    'wheel_radius',
+)
 
 
 @dataclass(frozen=True)
@@ -85,8 +89,10 @@ class WheelSlip(PeriodicPlugin):
         link = self.model.links.get(name)
         if link is None:
             known = ', '.join(self.model.links)
-            raise PluginError(f"line {element.line}: <wheel link_name='{name}'> is no link of "
-                              f"'{self.model.name}'; its links: {known}")
+            raise PluginError(
+                f"line {element.line}: <wheel link_name='{name}'> is no link of "
+                f"'{self.model.name}'; its links: {known}"
+            )
         joint = next((one for one in self.model.joints.values() if one.spec.child == name), None)
         if joint is None:
             raise PluginError(f"<wheel link_name='{name}'>: no joint turns this link")
@@ -98,7 +104,8 @@ class WheelSlip(PeriodicPlugin):
         if not link.can_slip(joint.spec.axis_in_child):
             raise PluginError(
                 f"<wheel link_name='{name}'>: its axle is no principal axis of its inertia, and "
-                'the engine can scale friction along these axes only')
+                'the engine can scale friction along these axes only'
+            )
         lateral, longitudinal = (max(0.0, numbers[tag]) for tag in NUMBERS[:2])
         return SlippingWheel(joint, lateral, longitudinal, numbers['wheel_normal_force'], radius)
 
@@ -110,5 +117,6 @@ def _number(element: Element, name: str, tag: str) -> float:
     value = parse_number(child.text)
     if value is None:
         raise PluginError(
-            f"<wheel link_name='{name}'>: <{tag}> is '{child.text}'; it takes a finite number")
+            f"<wheel link_name='{name}'>: <{tag}> is '{child.text}'; it takes a finite number"
+        )
     return value

@@ -52,20 +52,30 @@ class JointPoseTrajectory(ModelPlugin):
         in_world = frame in WORLD_FRAMES[1:]
         link = None if in_world else self.world.find_entity(frame)
         if not (isinstance(link, Link) or in_world):
-            logger.error('ros_joint_trajectory plugin needs a reference link [%s] as frame_id, '
-                         'aborting.', frame)
+            logger.error(
+                'ros_joint_trajectory plugin needs a reference link [%s] as frame_id, aborting.',
+                frame,
+            )
             return
         self._held: Link | Model = link if isinstance(link, Link) else self.model
         self._model: Model = link.model if isinstance(link, Link) else self.model
         self._joints: list[Joint | None] = [self._model.joints.get(name) for name in joints]
         unknown = [name for name, joint in zip(joints, self._joints, strict=True) if joint is None]
         if unknown:
-            logger.warning("%smodel '%s' has no joint %s; its joints: %s", self.log_prefix,
-                           self._model.name, ', '.join(unknown), ', '.join(self._model.joints))
+            logger.warning(
+                "%smodel '%s' has no joint %s; its joints: %s",
+                self.log_prefix,
+                self._model.name,
+                ', '.join(unknown),
+                ', '.join(self._model.joints),
+            )
         now_ns = self.world.clock.now_ns
         if start_ns > now_ns:
-            logger.warning('%sa trajectory begins at %g s; until it has ended nothing moves',
-                           self.log_prefix, start_ns / 1e9)
+            logger.warning(
+                '%sa trajectory begins at %g s; until it has ended nothing moves',
+                self.log_prefix,
+                start_ns / 1e9,
+            )
         self._points, self._next = list(points), 0
         self._start_ns = max(start_ns, now_ns)
         self.world.hold_physics(self)
@@ -81,8 +91,13 @@ class JointPoseTrajectory(ModelPlugin):
         if len(positions) == len(self._joints):
             self._put(positions)
         else:
-            logger.error('point[%d] in JointTrajectory has different number of joint names[%d] and '
-                         'positions[%d].', self._next, len(self._joints), len(positions))
+            logger.error(
+                'point[%d] in JointTrajectory has different number of joint names[%d] and '
+                'positions[%d].',
+                self._next,
+                len(self._joints),
+                len(positions),
+            )
         self._next += 1
         self._start_ns += duration_ns
         self._set_due()

@@ -33,8 +33,9 @@ class JointStatePublisher(PeriodicPlugin):
             try:
                 self.joints.append(self.model.joint(name))
             except NotFoundError as error:
-                logger.error('%sJoint %s does not exist! It is left out: %s',
-                             self.log_prefix, name, error)
+                logger.error(
+                    '%sJoint %s does not exist! It is left out: %s', self.log_prefix, name, error
+                )
         self.set_rate(self.params.rate('updateRate', 100.0))
         self.joint_states: Output[JointStates] = self.output('joint_states')
 
@@ -42,5 +43,6 @@ class JointStatePublisher(PeriodicPlugin):
         """Send the states."""
         states = [joint.state() for joint in self.joints]
         positions, velocities = zip(*states, strict=True) if states else ((), ())
-        self.joint_states.send(JointStates(
-            tuple(joint.name for joint in self.joints), positions, velocities))
+        self.joint_states.send(
+            JointStates(tuple(joint.name for joint in self.joints), positions, velocities)
+        )

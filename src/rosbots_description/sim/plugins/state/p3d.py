@@ -46,7 +46,9 @@ class P3D(PeriodicPlugin):
     prefix = 'gazebo_ros_p3d plugin: '
     missing_level = logging.DEBUG
     hints: Mapping[str, str] = {
-        'xyzOffsets': ' (the offset is <xyzOffset>)', 'rpyOffsets': ' (it is <rpyOffset>)'}
+        'xyzOffsets': ' (the offset is <xyzOffset>)',
+        'rpyOffsets': ' (it is <rpyOffset>)',
+    }
     strictly_after = keeps_rate = False
 
     def load(self) -> None:
@@ -66,8 +68,12 @@ class P3D(PeriodicPlugin):
                 self._frame = self.model.locate(frame)
                 is_known = True
             except NotFoundError as error:
-                logger.error('%sframeName: %s does not exist, will not publish pose: %s',
-                             self.log_prefix, frame, error)
+                logger.error(
+                    '%sframeName: %s does not exist, will not publish pose: %s',
+                    self.log_prefix,
+                    frame,
+                    error,
+                )
         self._shift, rpy = params.vector('xyzOffset'), params.vector('rpyOffset')  # [m], [rad]
         self._turn = from_rpy(*rpy)
         if self.world.strict and self._mount != IDENTITY:
@@ -83,8 +89,9 @@ class P3D(PeriodicPlugin):
         if self._frame is not None:
             link, mount = self._frame
             pose, twist = _seen_from(*link.state_at(mount), pose, twist)
-        pose = Pose(add(pose.position, self._shift),
-                    normalise(multiply(self._turn, pose.orientation)))
+        pose = Pose(
+            add(pose.position, self._shift), normalise(multiply(self._turn, pose.orientation))
+        )
         self.odometry.send(Odometry(pose, self._noisy(twist) if self.noise else twist))
 
     def _noisy(self, twist: Twist) -> Twist:
@@ -101,6 +108,9 @@ def _seen_from(frame: Pose, moving: Twist, pose: Pose, twist: Twist) -> tuple[Po
     """Return pose and twist in a moving frame, by upstream's formula."""
     back = conjugate(frame.orientation)
     position = rotate(back, subtract(pose.position, frame.position))
-    return Pose(position, multiply(pose.orientation, back)), Twist(*(
-        rotate(frame.orientation, subtract(own, others))
-        for own, others in zip(twist, moving, strict=True)))
+    return Pose(position, multiply(pose.orientation, back)), Twist(
+        *(
+            rotate(frame.orientation, subtract(own, others))
+            for own, others in zip(twist, moving, strict=True)
+        )
+    )

@@ -9,8 +9,9 @@ from .values import Lens
 
 # From the sensor's frame (x forward, y left, z up) to OpenGL's (x right, y up, z backward), with y
 # flipped: row 0 of OpenGL's buffer is then the top of the picture.
-_TO_CAMERA = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 0.0],
-                       [0.0, 0.0, 0.0, 1.0]])
+_TO_CAMERA = np.array(
+    [[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+)
 SHADOWED = 10.0  # [m] from the camera; no shadows beyond
 WIDEST = 2.4  # [rad] horizontal; no shadows beyond in wider cameras
 _CASTERS = 30.0  # [m] from the visible region towards the light: range of shadow casters
@@ -39,11 +40,14 @@ def projection(lens: Lens) -> NDArray[Any]:
     near, far = lens.near, lens.far
     across = 2.0 * lens.focal_length / lens.width
     upward = 2.0 * lens.focal_length / lens.height
-    return np.array([
-        [across, 0.0, 0.0, 0.0], [0.0, upward, 0.0, 0.0],
-        [0.0, 0.0, -(far + near) / (far - near), -2.0 * far * near / (far - near)],
-        [0.0, 0.0, -1.0, 0.0],
-    ])
+    return np.array(
+        [
+            [across, 0.0, 0.0, 0.0],
+            [0.0, upward, 0.0, 0.0],
+            [0.0, 0.0, -(far + near) / (far - near), -2.0 * far * near / (far - near)],
+            [0.0, 0.0, -1.0, 0.0],
+        ]
+    )
 
 
 def camera_view(eye: NDArray[Any]) -> NDArray[Any]:

@@ -24,12 +24,14 @@ def open_context() -> tuple[moderngl.Context, str, bool]:
     for name, package in LIBRARIES.values():
         if find_library(name) is None:
             raise NoContextError(
-                f'lib{name} is missing; install {package}, libegl-mesa0 and libgl1-mesa-dri')
+                f'lib{name} is missing; install {package}, libegl-mesa0 and libgl1-mesa-dri'
+            )
     software, reason = None, ''
     for number in range(_DEVICES):
         try:
             context = moderngl.create_context(
-                require=330, standalone=True, **_EGL | {'device_index': number})
+                require=330, standalone=True, **_EGL | {'device_index': number}
+            )
         except Exception as error:  # any error of a driver: the next device may work
             reason = str(error)
             if 'out of range' in reason or 'requested device index' in reason:
@@ -41,6 +43,8 @@ def open_context() -> tuple[moderngl.Context, str, bool]:
         software = context, name, True
         break  # software comes last
     if software is None:
-        raise NoContextError(f'there is no OpenGL 3.3 ({reason}); install libegl-mesa0 and '
-                             'libgl1-mesa-dri, which draw in software')
+        raise NoContextError(
+            f'there is no OpenGL 3.3 ({reason}); install libegl-mesa0 and '
+            'libgl1-mesa-dri, which draw in software'
+        )
     return software

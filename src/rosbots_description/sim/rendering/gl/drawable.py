@@ -51,8 +51,7 @@ class PlacedPrograms:
 
     def __init__(self, context: moderngl.Context) -> None:
         self.depth = context.program(vertex_shader=PLACED_VERTEX, fragment_shader=DEPTH_FRAGMENT)
-        self.shadow = context.program(
-            vertex_shader=PLACED_VERTEX, fragment_shader=NOTHING_FRAGMENT)
+        self.shadow = context.program(vertex_shader=PLACED_VERTEX, fragment_shader=NOTHING_FRAGMENT)
 
 
 class Drawable:
@@ -77,7 +76,8 @@ class Drawable:
         self.casts_shadow = part.casts_shadow and not self.transparent
         self._depth, self._shadow = (
             context.vertex_array(program, [(buffer, '3f 5x4', 'position')])
-            for program in (placed.depth, placed.shadow))
+            for program in (placed.depth, placed.shadow)
+        )
         self._image = image
         self._context, self._buffer = context, buffer
         self._surfaces: dict[ShaderVariant, tuple[moderngl.VertexArray, Any]] = {}  # with uniforms
@@ -123,11 +123,13 @@ class Drawable:
         """Draw the surface in its colours."""
         if variant not in self._surfaces:
             used = [name for name in LAYOUT if name in program]
-            layout = ' '.join(f'{size}f' if name in used else f'{size}x4'
-                              for name, size in LAYOUT.items())
+            layout = ' '.join(
+                f'{size}f' if name in used else f'{size}x4' for name, size in LAYOUT.items()
+            )
             self._surfaces[variant] = (
                 self._context.vertex_array(program, [(self._buffer, layout, *used)]),
-                _uniforms(program, self.part.appearance))
+                _uniforms(program, self.part.appearance),
+            )
         array, uniforms = self._surfaces[variant]
         uniform(program, 'placement').write(self._placement)
         if 'normal_placement' in program:
@@ -172,7 +174,8 @@ class Placements:
         middles = (placed[:, :3, :3] @ self._middles)[:, :, 0] + placed[:, :3, 3]
         lows = middles[:, 2] - (np.abs(placed[:, 2, :3]) * self._halves).sum(axis=1)
         for one, *where in zip(
-                self.drawables, placed, bodies[:, :3, :3], middles, lows.tolist(), strict=True):
+            self.drawables, placed, bodies[:, :3, :3], middles, lows.tolist(), strict=True
+        ):
             one.place(*where)
         seen = np.flatnonzero(frame.sees(middles, self._radii))
         frame.visible = [self.drawables[number] for number in seen.tolist()]
@@ -181,8 +184,10 @@ class Placements:
 @lru_cache(maxsize=4096)
 def _appearance_values(appearance: Appearance) -> dict[str, bytes]:
     values = {
-        'ambient': appearance.ambient, 'diffuse': (*appearance.diffuse, appearance.alpha),
-        'specular': (*appearance.specular, appearance.shininess), 'emissive': appearance.emissive,
+        'ambient': appearance.ambient,
+        'diffuse': (*appearance.diffuse, appearance.alpha),
+        'specular': (*appearance.specular, appearance.shininess),
+        'emissive': appearance.emissive,
         'lit': (float(appearance.lit),),
     }
     return {name: np.array(value, 'f4').tobytes() for name, value in values.items()}

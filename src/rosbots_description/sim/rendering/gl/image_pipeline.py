@@ -76,27 +76,46 @@ class _Distortion:
     def __init__(self, lens: Lens) -> None:
         self._coefficients = lens.distortion
         centre = np.array(lens.centre)[:, None, None]
-        seen = np.stack(np.meshgrid((np.arange(lens.width) + 0.5) / lens.width,
-                                    (np.arange(lens.height) + 0.5) / lens.height))
+        seen = np.stack(
+            np.meshgrid(
+                (np.arange(lens.width) + 0.5) / lens.width,
+                (np.arange(lens.height) + 0.5) / lens.height,
+            )
+        )
         if lens.crop:
-            low, high = (self._shown(corner - centre)[:, 0, 0]
-                         for corner in (np.zeros((2, 1, 1)), np.ones((2, 1, 1))))
+            low, high = (
+                self._shown(corner - centre)[:, 0, 0]
+                for corner in (np.zeros((2, 1, 1)), np.ones((2, 1, 1)))
+            )
             seen = 0.5 + (seen - 0.5) * (high - low)[:, None, None]
         sources = centre + self._inverse(seen - centre)
         self._outside = ((sources < 0.0) | (sources >= 1.0) | ~np.isfinite(sources)).any(axis=0)
         size = np.array([lens.width, lens.height])[:, None, None]
         places = np.where(self._outside, 0.0, np.clip(sources * size - 0.5, 0.0, size - 1.0))
         first = np.minimum(places.astype(int), np.maximum(size - 2, 0))
-        self._corners = [tuple(np.minimum(first + step, size - 1)[::-1]) for step in (
-            np.array(corner)[:, None, None] for corner in ((0, 0), (1, 0), (0, 1), (1, 1)))]
+        self._corners = [
+            tuple(np.minimum(first + step, size - 1)[::-1])
+            for step in (
+                np.array(corner)[:, None, None] for corner in ((0, 0), (1, 0), (0, 1), (1, 1))
+            )
+        ]
         right, down = (places - first).astype('f4')
-        self._shares = [share[:, :, None] for share in (
-            (1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down)]
+        self._shares = [
+            share[:, :, None]
+            for share in (
+                (1 - right) * (1 - down),
+                right * (1 - down),
+                (1 - right) * down,
+                right * down,
+            )
+        ]
 
     def apply(self, pixels: NDArray[Any]) -> NDArray[Any]:
         """Return the distorted picture (height, width, 4) of a pinhole picture."""
-        read = sum(share * pixels[corner]
-                   for share, corner in zip(self._shares, self._corners, strict=True))
+        read = sum(
+            share * pixels[corner]
+            for share, corner in zip(self._shares, self._corners, strict=True)
+        )
         result: NDArray[Any] = np.rint(read).astype('u1')
         result[self._outside] = pixels[0, 0] // 4  # as Gazebo: its sample there is 3/4 black border
         return result
@@ -119,5 +138,9 @@ class _Distortion:
         x, y = points
         square = x * x + y * y
         radial = 1.0 + square * (k1 + square * (k2 + square * k3))
-        return radial, np.stack([p2 * (square + 2.0 * x * x) + 2.0 * p1 * x * y,
-                                 p1 * (square + 2.0 * y * y) + 2.0 * p2 * x * y])
+        return radial, np.stack(
+            [
+                p2 * (square + 2.0 * x * x) + 2.0 * p1 * x * y,
+                p1 * (square + 2.0 * y * y) + 2.0 * p2 * x * y,
+            ]
+        )

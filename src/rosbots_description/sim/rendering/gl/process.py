@@ -63,13 +63,27 @@ class _Service:
         self._renderer.add_image(path, pixels)
 
     def _scene(
-        self, parts: list[Any], lights: list[Any], ambient: Colour, background: Colour,
-        shadows: bool, soft: bool,
+        self,
+        parts: list[Any],
+        lights: list[Any],
+        ambient: Colour,
+        background: Colour,
+        shadows: bool,
+        soft: bool,
     ) -> None:
-        self._renderer.set_scene(Scene(
-            tuple(ScenePart(key, body, matrix, Appearance(*appearance), *others)
-                  for key, body, matrix, appearance, *others in parts),
-            tuple(Light(*light) for light in lights), ambient, background, shadows, soft))
+        self._renderer.set_scene(
+            Scene(
+                tuple(
+                    ScenePart(key, body, matrix, Appearance(*appearance), *others)
+                    for key, body, matrix, appearance, *others in parts
+                ),
+                tuple(Light(*light) for light in lights),
+                ambient,
+                background,
+                shadows,
+                soft,
+            )
+        )
 
     def _camera(self, number: int, lens: tuple[Any, ...], size: int) -> None:
         """Add a camera with the shared memory sent along."""
@@ -83,7 +97,12 @@ class _Service:
         self._cameras.pop(number).memory.close()
 
     def _picture(
-        self, number: int, place: int, wants: tuple[bool, ...], seed: int, eye: bytes,
+        self,
+        number: int,
+        place: int,
+        wants: tuple[bool, ...],
+        seed: int,
+        eye: bytes,
         poses: bytes,
     ) -> None:
         """Write a picture to the camera's memory at offset `place`, and answer."""
@@ -99,8 +118,10 @@ class _Service:
                     camera.write(place, content.reshape(-1).view('u1').data)
                 if wanted.jpeg:
                     file = jpeg_file(content, lens.encoding)
-                    camera.write(place + lens.colour_bytes + lens.depth_bytes,
-                                 struct.pack('<I', len(file)) + file)
+                    camera.write(
+                        place + lens.colour_bytes + lens.depth_bytes,
+                        struct.pack('<I', len(file)) + file,
+                    )
             if wanted.depths:
                 depths = self._renderer.depths(lens, where, bodies)
                 camera.write(place + lens.colour_bytes, depths.reshape(-1).view('u1').data)
@@ -119,4 +140,4 @@ class _Camera:
 
     def write(self, place: int, content: 'bytes | memoryview') -> None:
         """Write to the shared memory at offset `place`."""
-        self.memory[place:place + len(content)] = content
+        self.memory[place : place + len(content)] = content

@@ -19,13 +19,20 @@ class RenderTarget:
         dtype, channels = self._form
         self._plain = context.framebuffer(
             [context.renderbuffer(size, channels, dtype=dtype)],
-            None if samples else context.depth_renderbuffer(size))
-        self._drawn = context.framebuffer(
-            [context.renderbuffer(size, channels, samples=samples)],
-            context.depth_renderbuffer(size, samples=samples)) if samples else self._plain
+            None if samples else context.depth_renderbuffer(size),
+        )
+        self._drawn = (
+            context.framebuffer(
+                [context.renderbuffer(size, channels, samples=samples)],
+                context.depth_renderbuffer(size, samples=samples),
+            )
+            if samples
+            else self._plain
+        )
         self._pixels = np.empty(
             (height, width) if channels == 1 else (height, width, channels),
-            'f4' if dtype == 'f4' else 'u1')
+            'f4' if dtype == 'f4' else 'u1',
+        )
 
     def use(self) -> None:
         """Bind it for drawing."""

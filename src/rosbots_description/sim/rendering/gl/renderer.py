@@ -58,20 +58,33 @@ class Renderer:
         self._lights = scene.lights[:MAX_LIGHTS]
         self._light_block.release()
         self._light_block = self._context.buffer(light_block(self._lights))
-        casting = [number for number, light in enumerate(self._lights)
-                   if light.type == DIRECTIONAL and light.casts_shadow]
+        casting = [
+            number
+            for number, light in enumerate(self._lights)
+            if light.type == DIRECTIONAL and light.casts_shadow
+        ]
         self._sun = casting[0] if scene.shadows and casting else None
         if self._shadows is not None:
             self._shadows.release()
-        self._shadows = None if self._sun is None else Shadows(
-            self._context, self._placed.shadow, np.array(self._lights[self._sun].direction))
+        self._shadows = (
+            None
+            if self._sun is None
+            else Shadows(
+                self._context, self._placed.shadow, np.array(self._lights[self._sun].direction)
+            )
+        )
         for drawable in self._drawables:
             drawable.release()
         self._drop(self._meshes, {part.mesh for part in scene.parts})
         self._drop(self._images, {part.appearance.texture for part in scene.parts})
         self._drawables = [
-            Drawable(self._context, part, *self._meshes[part.mesh], self._placed,
-                     self._images.get(part.appearance.texture))
+            Drawable(
+                self._context,
+                part,
+                *self._meshes[part.mesh],
+                self._placed,
+                self._images.get(part.appearance.texture),
+            )
             for part in scene.parts
         ]
         self._placements = Placements(self._drawables)
@@ -92,7 +105,8 @@ class Renderer:
         if program is None:
             types = [light.type for light in self._lights]
             program = self._programs[variant] = self._context.program(
-                *surface_shaders(types, self._sun, variant, self._scene.soft))
+                *surface_shaders(types, self._sun, variant, self._scene.soft)
+            )
             if 'Lights' in program:
                 cast(moderngl.UniformBlock, program['Lights']).binding = _LIGHTS
         if variant not in frame.prepared:
@@ -106,25 +120,30 @@ class Renderer:
             self._stood = stands
             shadows.forget()
         low = min((one.low for one in self._drawables), default=0.0)
-        seen = [Sweeps(some, shadows.direction, low).seen(frame.planes)
-                for some in (self._still_casters, self._moving_casters)]
+        seen = [
+            Sweeps(some, shadows.direction, low).seen(frame.planes)
+            for some in (self._still_casters, self._moving_casters)
+        ]
         near = shadows.draw(frame.eye, frame.lens, self._still_casters, seen[1])
-        frame.shadows = {name: Sweeps(some, shadows.direction, low)
-                         for name, some in (('still', seen[0]), ('moving', near)) if some}
+        frame.shadows = {
+            name: Sweeps(some, shadows.direction, low)
+            for name, some in (('still', seen[0]), ('moving', near))
+            if some
+        }
         middles = np.array([one.middle for one in frame.visible]).reshape(-1, 3)
         radii = np.array([one.radius for one in frame.visible])
         reached = {name: sweeps.reach(middles, radii) for name, sweeps in frame.shadows.items()}
-        frame.shadowed = {one: tuple(name for name, those in reached.items() if those[number])
-                          for number, one in enumerate(frame.visible)}
+        frame.shadowed = {
+            one: tuple(name for name, those in reached.items() if those[number])
+            for number, one in enumerate(frame.visible)
+        }
 
     def _drop(self, kept: dict[str, Any], used: set[str]) -> None:
         for key in [key for key in kept if key not in used]:
             resource = kept.pop(key)
             (resource[0] if isinstance(resource, tuple) else resource).release()
 
-    def colours(
-        self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]
-    ) -> NDArray[Any]:
+    def colours(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> NDArray[Any]:
         """Return the picture (height, width, 4) uint8, without camera effects.
 
         Args:
@@ -157,8 +176,7 @@ class Renderer:
 
     def _frame(self, lens: Lens, eye: NDArray[Any], poses: NDArray[Any]) -> Frame:
         eye_matrix = matrices(np.asarray(eye, dtype=float)[None])[0]
-        frame = Frame(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix),
-                      matrices(poses))
+        frame = Frame(lens, eye_matrix, projection(lens) @ camera_view(eye_matrix), matrices(poses))
         self._placements.place(frame)
         return frame
 

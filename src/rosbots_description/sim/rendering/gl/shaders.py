@@ -173,8 +173,20 @@ class ShaderVariant(NamedTuple):
 def light_block(lights: Sequence[Light]) -> bytes:
     """Return the contents of the block `Lights`, for at least one light."""
     rows = [
-        [*light.position, 0.0, *light.direction, 0.0, *light.diffuse, 0.0, *light.specular, 0.0,
-         *light.attenuation, light.range, *light.spot, 0.0]
+        [
+            *light.position,
+            0.0,
+            *light.direction,
+            0.0,
+            *light.diffuse,
+            0.0,
+            *light.specular,
+            0.0,
+            *light.attenuation,
+            light.range,
+            *light.spot,
+            0.0,
+        ]
         for light in lights
     ]
     return np.array(rows or np.zeros((1, 24)), 'f4').tobytes()
@@ -191,21 +203,28 @@ def surface_shaders(
         variant: what they compute.
         soft: whether the edges of shadows are blurred.
     """
-    sunshine = ' * '.join(
-        f'share_of_light({name}_shadows, {name}_point, {name}_texel)'
-        for name in variant.maps) or '1.0'
+    sunshine = (
+        ' * '.join(
+            f'share_of_light({name}_shadows, {name}_point, {name}_texel)' for name in variant.maps
+        )
+        or '1.0'
+    )
     words = {
         'LIGHT_BLOCK': _LIGHT_BLOCK,
         'SHINE': ''.join(
             _SHINE[kind].format(i=i, sunshine=sunshine if i == sun else '1.0')
-            for i, kind in enumerate(types)),
+            for i, kind in enumerate(types)
+        ),
         'POINTS': ' '.join(
-            f'{name}_point = map_point({name}_view, {name}_texel);' for name in variant.maps),
+            f'{name}_point = map_point({name}_view, {name}_texel);' for name in variant.maps
+        ),
         'SHARE': 'blurred(map, point, texel)' if soft else 'texture(map, point)',
-        'BLURRED': _BLURRED if soft else '', 'BLUR': str(_BLUR if soft else 0.0),
+        'BLURRED': _BLURRED if soft else '',
+        'BLUR': str(_BLUR if soft else 0.0),
         'GLOSS': _GLOSS if variant.glossy else '',
         'IMAGE': 'texture(image, uv)' if variant.textured else '1.0',
-        'LIGHTS': str(max(1, len(types))), 'SUN': str(sun or 0),
+        'LIGHTS': str(max(1, len(types))),
+        'SUN': str(sun or 0),
     }
     vertex, fragment = _SURFACE_VERTEX, _SURFACE_FRAGMENT
     for word, meaning in words.items():

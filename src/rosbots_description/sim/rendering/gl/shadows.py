@@ -102,7 +102,8 @@ class Sweeps:
         if not before.all():
             ends = before[:, :, None] & ~before[:, None, :]
             share = (depths[:, :, None] - _CLOSE) / np.where(
-                ends, depths[:, :, None] - depths[:, None, :], 1.0)
+                ends, depths[:, :, None] - depths[:, None, :], 1.0
+            )
             between = shadow[:, :, None] + share[..., None] * (shadow[:, None] - shadow[:, :, None])
             shadow = np.concatenate([shadow, between.reshape(len(corners), -1, 4)], axis=1)
             before = np.concatenate([before, ends.reshape(len(corners), -1)], axis=1)
@@ -110,11 +111,16 @@ class Sweeps:
         pixels = (shadow[:, :, :2] / depths[:, :, None] + 1.0) / 2.0 * size
         low, high = (
             np.clip(np.where(before[:, :, None], pixels, outside), 0, size)
-            for outside in (np.inf, -np.inf))
+            for outside in (np.inf, -np.inf)
+        )
         least, most = np.floor(low.min(axis=1)), np.ceil(high.max(axis=1))
-        return [(x, y, right - x, top - y) for (x, y), (right, top) in zip(
-            least.astype(int).tolist(), most.astype(int).tolist(), strict=True)
-            if right > x and top > y]
+        return [
+            (x, y, right - x, top - y)
+            for (x, y), (right, top) in zip(
+                least.astype(int).tolist(), most.astype(int).tolist(), strict=True
+            )
+            if right > x and top > y
+        ]
 
 
 class Shadows:
@@ -154,19 +160,19 @@ class Shadows:
         cell = np.round(middle / (_CELL * radius))
         if still_map.place is None or (still_map.place != cell).any():
             still_map.place = cell
-            still_map.draw(
-                self._program, self._axes, cell * _CELL * radius, radius * _ROOM, still)
-        near = [one for one in moving
-                if np.linalg.norm(one.middle - middle) < radius + one.radius]
+            still_map.draw(self._program, self._axes, cell * _CELL * radius, radius * _ROOM, still)
+        near = [one for one in moving if np.linalg.norm(one.middle - middle) < radius + one.radius]
         self._used = {'still': still_map}
         if near:
             centre, reach = _bounding_sphere(near)
-            size = next((size for size in MOVING_SIZES if 2.0 * reach < size * _FINE),
-                        MOVING_SIZES[-1])
+            size = next(
+                (size for size in MOVING_SIZES if 2.0 * reach < size * _FINE), MOVING_SIZES[-1]
+            )
             if size not in self._moving:
                 self._moving[size] = _Map(self._context, size)
             self._moving[size].draw(
-                self._program, self._axes, centre, reach, near, view_corners(eye, lens))
+                self._program, self._axes, centre, reach, near, view_corners(eye, lens)
+            )
             self._used['moving'] = self._moving[size]
         return near
 
@@ -207,8 +213,13 @@ class _Map:
         self.texture.release()
 
     def draw(
-        self, program: moderngl.Program, axes: NDArray[Any], middle: NDArray[Any], radius: float,
-        casters: Sequence[Caster], seen: NDArray[Any] | None = None,
+        self,
+        program: moderngl.Program,
+        axes: NDArray[Any],
+        middle: NDArray[Any],
+        radius: float,
+        casters: Sequence[Caster],
+        seen: NDArray[Any] | None = None,
     ) -> None:
         """Draw the casters of shadows into a bounding sphere.
 

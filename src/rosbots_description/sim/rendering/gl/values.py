@@ -7,8 +7,12 @@ Colour = tuple[float, float, float]
 
 RGB, BGR, RGB16, GREY8, GREY16 = 'rgb8', 'bgr8', 'rgb16', 'mono8', 'mono16'
 # The channel kept in each pixel of a 2 by 2 block, row by row.
-BAYER = {'bayer_rggb8': (0, 1, 1, 2), 'bayer_bggr8': (2, 1, 1, 0),
-         'bayer_gbrg8': (1, 2, 0, 1), 'bayer_grbg8': (1, 0, 2, 1)}
+BAYER = {
+    'bayer_rggb8': (0, 1, 1, 2),
+    'bayer_bggr8': (2, 1, 1, 0),
+    'bayer_gbrg8': (1, 2, 0, 1),
+    'bayer_grbg8': (1, 0, 2, 1),
+}
 BYTES = {RGB: 3, BGR: 3, RGB16: 6, GREY8: 1, GREY16: 2, **dict.fromkeys(BAYER, 1)}  # of a pixel
 
 DIRECTIONAL, POINT, SPOT = range(3)

@@ -131,10 +131,14 @@ def test_static_model_does_not_fall():
 
 
 def test_files_of_a_submesh_are_removed_with_the_last_model():
-    shape = (f'<geometry><mesh><uri>file://{ROOT}/meshes/wheel.dae</uri>'
-             '<submesh><name>wheel</name><center>1</center></submesh></mesh></geometry>')
-    text = (f'<sdf version="1.6"><model name="m"><link name="l"><collision name="c">{shape}'
-            f'</collision><visual name="v">{shape}</visual></link></model></sdf>')
+    shape = (
+        f'<geometry><mesh><uri>file://{ROOT}/meshes/wheel.dae</uri>'
+        '<submesh><name>wheel</name><center>1</center></submesh></mesh></geometry>'
+    )
+    text = (
+        f'<sdf version="1.6"><model name="m"><link name="l"><collision name="c">{shape}'
+        f'</collision><visual name="v">{shape}</visual></link></model></sdf>'
+    )
     with empty_world() as world:
         for name in ('first', 'second'):
             spec, _ = load_sdf(text, name, find_model=ModelSearch())

@@ -8,11 +8,15 @@ from rosbots_description.sim.formats.sdf.sdf import load_sdf
 
 SECOND = 1000  # steps
 
-LOOSE = '<sdf version="1.6"><model name="pile">' + ''.join(
-    f"""<link name="{name}"><pose>0 0 {z} 0 0 0</pose><collision name="c"><geometry>
+LOOSE = (
+    '<sdf version="1.6"><model name="pile">'
+    + ''.join(
+        f"""<link name="{name}"><pose>0 0 {z} 0 0 0</pose><collision name="c"><geometry>
     <box><size>1 1 1</size></box></geometry></collision></link>"""
-    for name, z in (('low', 0.5), ('high', 2.0))
-) + '</model></sdf>'
+        for name, z in (('low', 0.5), ('high', 2.0))
+    )
+    + '</model></sdf>'
+)
 
 
 def loose_links():
@@ -57,12 +61,15 @@ def test_unconnected_links_do_not_collide_after_a_deletion():
 
 
 def test_static_model_may_have_several_surfaces():
-    floor = box_urdf('4 4 0.2', 1.0) + """
+    floor = (
+        box_urdf('4 4 0.2', 1.0)
+        + """
       <link name="ice"><collision><origin xyz="4 0 0"/><geometry><box size="4 4 0.2"/></geometry>
         </collision></link>
       <joint name="j" type="fixed"><parent link="box"/><child link="ice"/></joint>
       <gazebo reference="ice"><mu1>0</mu1><mu2>0</mu2></gazebo>
       <gazebo><static>true</static></gazebo>"""
+    )
     with empty_world() as world:
         world.spawn(urdf_spec(floor), 'floor', Pose((0.0, 0.0, 1.0)))
         places = {'rough': 0.0, 'smooth': 4.0}
@@ -87,8 +94,10 @@ def two_faced(name, place, extra=(), self_collide=0):
         </box></geometry>{SLIPPERY.format(mu)}</collision>"""
         for side, x, mu in (('left', 0.5, 1.0), ('right', -0.5, 0.2), *extra)
     )
-    return (f'<link name="{name}"><pose>{place} 0 0 0</pose>'
-            f'<self_collide>{self_collide}</self_collide>{shapes}</link>')
+    return (
+        f'<link name="{name}"><pose>{place} 0 0 0</pose>'
+        f'<self_collide>{self_collide}</self_collide>{shapes}</link>'
+    )
 
 
 def sdf_model(*parts):
@@ -120,21 +129,29 @@ def test_links_of_a_joint_do_not_collide_with_any_of_their_surfaces():
 
 def masked(collide, category='', shape='<box><size>1 1 1</size></box>'):
     """Return a box of 1 m whose collision has these bitmasks."""
-    masks = ''.join(f'<{tag}>{mask}</{tag}>' for tag, mask in (
-        ('collide_bitmask', collide), ('category_bitmask', category)) if mask)
-    return sdf_model(f'<link name="l"><collision name="c"><geometry>{shape}</geometry><surface>'
-                     f'<contact>{masks}</contact></surface></collision></link>')
+    masks = ''.join(
+        f'<{tag}>{mask}</{tag}>'
+        for tag, mask in (('collide_bitmask', collide), ('category_bitmask', category))
+        if mask
+    )
+    return sdf_model(
+        f'<link name="l"><collision name="c"><geometry>{shape}</geometry><surface>'
+        f'<contact>{masks}</contact></surface></collision></link>'
+    )
 
 
-@pytest.mark.parametrize(('lower', 'upper', 'meet'), [
-    (('0x01',), ('0x02',), False),
-    (('0x01',), ('0x03',), True),
-    (('1',), ('',), True),  # by default everything
-    (('0',), ('',), False),
-    (('0x01', '0x02'), ('0x02', '0x01'), True),  # each collides with the other's category
-    (('0x04', '0x02'), ('0x08', '0x01'), False),
-    (('0x04', '0x02'), ('0x02', '0x01'), True),  # one direction is enough
-])
+@pytest.mark.parametrize(
+    ('lower', 'upper', 'meet'),
+    [
+        (('0x01',), ('0x02',), False),
+        (('0x01',), ('0x03',), True),
+        (('1',), ('',), True),  # by default everything
+        (('0',), ('',), False),
+        (('0x01', '0x02'), ('0x02', '0x01'), True),  # each collides with the other's category
+        (('0x04', '0x02'), ('0x08', '0x01'), False),
+        (('0x04', '0x02'), ('0x02', '0x01'), True),  # one direction is enough
+    ],
+)
 def test_bitmasks_decide_whether_two_models_collide(lower, upper, meet):
     with empty_world() as world:
         world.spawn(masked(*lower), 'lower', Pose((0.0, 0.0, 0.5)))
@@ -169,9 +186,11 @@ def test_collisions_of_one_link_have_their_own_bitmasks():
         f'<collision name="{name}"><pose>{x} 0 0 0 0 0</pose><geometry><box><size>{long} 1 0.2'
         f'</size></box></geometry><surface><contact><collide_bitmask>{mask}</collide_bitmask></contact>'
         '</surface></collision>'
-        for name, x, long, mask in (('left', -0.4, 0.2, 1), ('right', 0.1, 0.8, 0)))
+        for name, x, long, mask in (('left', -0.4, 0.2, 1), ('right', 0.1, 0.8, 0))
+    )
     with empty_world() as world:
-        plank = world.spawn(sdf_model(f'<link name="l">{parts}</link>'), 'm',
-                            Pose((0.0, 0.0, 0.11)))
+        plank = world.spawn(
+            sdf_model(f'<link name="l">{parts}</link>'), 'm', Pose((0.0, 0.0, 0.11))
+        )
         world.run(SECOND)
         assert abs(plank.pose.orientation[1]) > 0.2

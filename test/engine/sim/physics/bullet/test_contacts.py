@@ -45,8 +45,10 @@ def test_contacts_name_the_collisions_and_balance_the_weight():
         ground = world.models['ground_plane']
         contacts = world.engine.contacts(thing.body)
         # Collisions of a URDF are named as by sdformat.
-        of = {name: [c for c in contacts if name in c.one.collision]
-              for name in thing.links['body'].collisions}
+        of = {
+            name: [c for c in contacts if name in c.one.collision]
+            for name in thing.links['body'].collisions
+        }
         assert len(of) == 3
         assert all(of.values())
         assert sum(map(len, of.values())) == len(contacts)
@@ -98,17 +100,24 @@ def test_friction_opposes_sliding(shape):
 
 
 def test_touching_links_of_a_model_give_one_contact():
-    leg = ('<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
-           'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.2"/>'
-           '</geometry></collision></link><gazebo reference="{0}"><selfCollide>1</selfCollide>'
-           '</gazebo>')
-    joint = ('<joint name="{0}" type="prismatic"><parent link="base"/><child link="{0}"/>'
-             '<origin xyz="{1} 0 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
-             'velocity="1"/></joint>')
-    base = ('<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" '
-            'ixz="0" iyz="0"/></inertial></link>')
-    spec = urdf_spec(base + leg.format('a') + leg.format('b') + joint.format('a', -0.3)
-                     + joint.format('b', 0.3))
+    leg = (
+        '<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
+        'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.2"/>'
+        '</geometry></collision></link><gazebo reference="{0}"><selfCollide>1</selfCollide>'
+        '</gazebo>'
+    )
+    joint = (
+        '<joint name="{0}" type="prismatic"><parent link="base"/><child link="{0}"/>'
+        '<origin xyz="{1} 0 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
+        'velocity="1"/></joint>'
+    )
+    base = (
+        '<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" '
+        'ixz="0" iyz="0"/></inertial></link>'
+    )
+    spec = urdf_spec(
+        base + leg.format('a') + leg.format('b') + joint.format('a', -0.3) + joint.format('b', 0.3)
+    )
     with empty_world() as world:
         pair = world.spawn(spec, 'pair', Pose((0.0, 0.0, 5.0)))
         pair.joints['a'].set_motor(1.0, 20.0)

@@ -25,7 +25,10 @@ def box(surface, size='0.3 0.3 0.2', more=''):
         f'<sdf version="1.6"><model name="m">{more}<link name="l"><inertial><mass>1</mass><inertia>'
         '<ixx>0.01</ixx><iyy>0.011</iyy><izz>0.015</izz></inertia></inertial><collision name="c">'
         f'<geometry><box><size>{size}</size></box></geometry><surface>{surface}</surface>'
-        '</collision></link></model></sdf>', 'box', find_model=ModelSearch())[0]
+        '</collision></link></model></sdf>',
+        'box',
+        find_model=ModelSearch(),
+    )[0]
 
 
 def slide(surface, direction, yaw=0.0, speed=1.5):
@@ -76,8 +79,11 @@ def test_slip_velocity_is_slip_times_force(slip1, slip2, speed, yaw):
 def test_slip_on_a_slab_does_not_depend_on_the_order_of_spawns(slab_comes):
     spawns = [
         (box('', '4 4 0.1', '<static>1</static>'), 'slab', Pose((0.0, 0.0, 0.05))),
-        (box(friction(1, 1, '<slip1>0.2</slip1><slip2>0.02</slip2>')), 'box',
-         Pose((0.0, 0.0, 0.2))),
+        (
+            box(friction(1, 1, '<slip1>0.2</slip1><slip2>0.02</slip2>')),
+            'box',
+            Pose((0.0, 0.0, 0.2)),
+        ),
     ]
     with empty_world() as world:
         for spawn in spawns if slab_comes == 'first' else reversed(spawns):
@@ -101,13 +107,18 @@ def bounce(restitution, max_vel):
         return load_sdf(
             f'<sdf version="1.6"><model name="{name}"><static>{static}</static><link name="l">'
             f'<collision name="c"><geometry>{shape}</geometry>{surface}</collision></link></model>'
-            '</sdf>', name, find_model=ModelSearch())[0]
+            '</sdf>',
+            name,
+            find_model=ModelSearch(),
+        )[0]
 
     with empty_world() as world:
-        world.spawn(model('plate', '<box><size>1 1 0.1</size></box>', 1), 'plate',
-                    Pose((0.0, 0.0, 0.05)))
-        ball = world.spawn(model('ball', '<sphere><radius>0.2</radius></sphere>', 0), 'ball',
-                           Pose((0.0, 0.0, 1.3)))
+        world.spawn(
+            model('plate', '<box><size>1 1 0.1</size></box>', 1), 'plate', Pose((0.0, 0.0, 0.05))
+        )
+        ball = world.spawn(
+            model('ball', '<sphere><radius>0.2</radius></sphere>', 0), 'ball', Pose((0.0, 0.0, 1.3))
+        )
         world.run(470)
         highest = 0.0
         for _ in range(80):
@@ -136,14 +147,18 @@ def drift(lateral, longitudinal, force, yaw):
         f'<slip_compliance_lateral>{lateral}</slip_compliance_lateral>'
         f'<slip_compliance_longitudinal>{longitudinal}</slip_compliance_longitudinal>'
         f'<wheel_normal_force>{LOAD / 4}</wheel_normal_force></wheel>'
-        for side in ('left', 'right') for end in ('front', 'rear')
+        for side in ('left', 'right')
+        for end in ('front', 'rear')
     )
-    plugin = ('<gazebo><plugin name="slip" filename="libgazebo_ros_wheel_slip.so">'
-              f'{wheels}</plugin></gazebo></robot>')
+    plugin = (
+        '<gazebo><plugin name="slip" filename="libgazebo_ros_wheel_slip.so">'
+        f'{wheels}</plugin></gazebo></robot>'
+    )
     text = SKID4.read_text(encoding='utf-8').replace('</robot>', plugin)
     with empty_world() as world:
-        model = world.spawn(load_urdf(text, 'skid4')[0], 'robot',
-                            Pose((0.0, 0.0, 0.02), from_rpy(0.0, 0.0, yaw)))
+        model = world.spawn(
+            load_urdf(text, 'skid4')[0], 'robot', Pose((0.0, 0.0, 0.02), from_rpy(0.0, 0.0, yaw))
+        )
         world.run(500)
         next(iter(model.plugins.values())).command(SPEED, 0.0)
         body, start = model.links['base_footprint'], None

@@ -56,17 +56,32 @@ def energies(model):
 
 def body(moments, com=(0.0, 0.0, 0.0), mu=1.0):
     shape = Collision('box', Box((0.1, 0.1, 0.1)), surface=Surface(mu=mu))
-    return ModelSpec('body', (LinkSpec('link', inertial=Inertial(1.0, Pose(com), *moments),
-                                       collisions=(shape,)),))
+    return ModelSpec(
+        'body',
+        (LinkSpec('link', inertial=Inertial(1.0, Pose(com), *moments), collisions=(shape,)),),
+    )
 
 
 def chain(count, length, mass=1.0, hangs=True):
     """Return a chain of rods along x; if `hangs`, its first end is on a joint to the world."""
-    rod = Inertial(mass, Pose((length / 2.0, 0.0, 0.0)), mass * 1e-4,
-                   mass * length**2 / 12.0, mass * length**2 / 12.0)
+    rod = Inertial(
+        mass,
+        Pose((length / 2.0, 0.0, 0.0)),
+        mass * 1e-4,
+        mass * length**2 / 12.0,
+        mass * length**2 / 12.0,
+    )
     links = tuple(LinkSpec(f'link{i}', Pose((i * length, 0.0, 0.0)), rod) for i in range(count))
-    joints = tuple(JointSpec(f'joint{i}', REVOLUTE, f'link{i - 1}' if i else 'world', f'link{i}',
-                             axis=(0.0, 1.0, 0.0)) for i in range(not hangs, count))
+    joints = tuple(
+        JointSpec(
+            f'joint{i}',
+            REVOLUTE,
+            f'link{i - 1}' if i else 'world',
+            f'link{i}',
+            axis=(0.0, 1.0, 0.0),
+        )
+        for i in range(not hangs, count)
+    )
     return ModelSpec('chain', links, joints)
 
 
@@ -86,14 +101,17 @@ def share_kept(spec, velocity, seconds, **settings):
     return min(shares) / shares[0], max(shares) / shares[0]
 
 
-@pytest.mark.parametrize(('moments', 'com', 'speed', 'mu'), [
-    ((0.1, 0.2, 0.3), (0.0, 0.0, 0.0), 10.0, 1.0),  # about the middle axis
-    ((0.1, 0.2, 0.3), (0.0, 0.0, 0.0), 60.0, 1.0),
-    ((0.1, 0.2, 0.3), (0.0, 0.0, 0.0), 60.0, 0.5),
-    ((0.01, 0.105, 0.11), (0.4, 0.0, 0.1), 37.0, 1.0),  # a stick, thrown by its end
-    ((0.01, 0.105, 0.11), (0.4, 0.0, 0.1), 10.0, 2.0),
-    ((0.3, 0.2, 0.2), (0.0, 0.0, 0.0), 60.0, 1.0),
-])
+@pytest.mark.parametrize(
+    ('moments', 'com', 'speed', 'mu'),
+    [
+        ((0.1, 0.2, 0.3), (0.0, 0.0, 0.0), 10.0, 1.0),  # about the middle axis
+        ((0.1, 0.2, 0.3), (0.0, 0.0, 0.0), 60.0, 1.0),
+        ((0.1, 0.2, 0.3), (0.0, 0.0, 0.0), 60.0, 0.5),
+        ((0.01, 0.105, 0.11), (0.4, 0.0, 0.1), 37.0, 1.0),  # a stick, thrown by its end
+        ((0.01, 0.105, 0.11), (0.4, 0.0, 0.1), 10.0, 2.0),
+        ((0.3, 0.2, 0.2), (0.0, 0.0, 0.0), 60.0, 1.0),
+    ],
+)
 def test_spinning_body_keeps_its_energy(moments, com, speed, mu):
     least, most = share_kept(body(moments, com, mu), (0.01 * speed, speed, 0.03 * speed), 10.0)
     assert least > 0.97
@@ -129,8 +147,9 @@ def swing(spec, seconds):
         for _ in range(round(seconds * 50)):
             world.run(20)
             changes.append(energies(model)[0] - start)
-            fastest = max(fastest, *(math.hypot(*link.twist.linear)
-                                     for link in model.links.values()))
+            fastest = max(
+                fastest, *(math.hypot(*link.twist.linear) for link in model.links.values())
+            )
     finally:
         world.close()
     return changes, fastest
@@ -144,8 +163,9 @@ def test_pendulum_of_several_rods_gains_no_energy_and_keeps_swinging(count, leng
     assert min(changes) > -0.35 * there
 
 
-@pytest.mark.parametrize(('count', 'length', 'mass'), [(30, 0.1, 1.0), (40, 0.2, 0.1),
-                                                       (50, 0.1, 5.0)])
+@pytest.mark.parametrize(
+    ('count', 'length', 'mass'), [(30, 0.1, 1.0), (40, 0.2, 0.1), (50, 0.1, 5.0)]
+)
 def test_released_long_chain_gains_no_energy(count, length, mass):
     changes, fastest = swing(chain(count, length, mass), 3.0)
     assert max(changes) < 0.02 * GRAVITY * mass * length * count**2 / 2.0
@@ -159,9 +179,15 @@ def test_single_pendulum_keeps_its_amplitude():
 
 def test_thrown_chain_gains_no_speed():
     spec = chain(30, 0.1, hangs=False)
-    links = tuple(LinkSpec(link.name, link.pose, link.inertial,
-                           (Collision('ball', Box((0.08, 0.04, 0.04)), Pose((0.05, 0.0, 0.0))),))
-                  for link in spec.links)
+    links = tuple(
+        LinkSpec(
+            link.name,
+            link.pose,
+            link.inertial,
+            (Collision('ball', Box((0.08, 0.04, 0.04)), Pose((0.05, 0.0, 0.0))),),
+        )
+        for link in spec.links
+    )
     with empty_world() as world:
         model = world.spawn(ModelSpec('chain', links, spec.joints), 'chain', Pose((0, 0, 2.0)))
         model.set_twist(Twist((0.0, 0.0, 3.0), (1.0, 8.0, 0.0)))
@@ -180,15 +206,21 @@ def test_motor_may_add_energy_to_its_load():
         assert model.joint('joint0').velocity == pytest.approx(20.0, rel=0.05)
 
 
-@pytest.mark.parametrize(('size', 'speed', 'height', 'inertia'), [
-    ((0.5, 0.5, 0.05), 10.0, 0.3, 1.0), ((0.3, 0.3, 0.2), 50.0, 0.1, 1.0),
-    ((0.2, 0.2, 0.02), 25.0, 2.0, 1.0), ((1.0, 0.4, 0.04), 5.0, 1.0, 1.0),
-    ((0.4, 0.4, 0.1), 20.0, 1.5, 5.0),
-])
+@pytest.mark.parametrize(
+    ('size', 'speed', 'height', 'inertia'),
+    [
+        ((0.5, 0.5, 0.05), 10.0, 0.3, 1.0),
+        ((0.3, 0.3, 0.2), 50.0, 0.1, 1.0),
+        ((0.2, 0.2, 0.02), 25.0, 2.0, 1.0),
+        ((1.0, 0.4, 0.04), 5.0, 1.0, 1.0),
+        ((0.4, 0.4, 0.1), 20.0, 1.5, 5.0),
+    ],
+)
 def test_box_spinning_about_the_vertical_lands_flat(size, speed, height, inertia):
     x, y, z = (inertia * length**2 / 12.0 for length in size)
     text = box_urdf(' '.join(map(str, size)), 1.0).replace(
-        'ixx="0.1" iyy="0.1" izz="0.1"', f'ixx="{y + z}" iyy="{x + z}" izz="{x + y}"')
+        'ixx="0.1" iyy="0.1" izz="0.1"', f'ixx="{y + z}" iyy="{x + z}" izz="{x + y}"'
+    )
     with empty_world() as world:
         box = world.spawn(urdf_spec(text), 'box', Pose((0.0, 0.0, height)))
         box.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, speed)))

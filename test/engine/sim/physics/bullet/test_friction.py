@@ -36,11 +36,25 @@ def acceleration_down(slope, mu_box, mu_ramp, steps=SECOND):
         return (math.hypot(*box.twist.linear) - before) / (steps / SECOND)
 
 
-@pytest.mark.parametrize(('mu_box', 'mu_ramp', 'mu'), [
-    (0.5, 0.5, 0.5), (0.3, 0.3, 0.3), (0.3, 0.8, 0.3), (0.9, 0.4, 0.4), (1.0, 0.4, 0.4),
-    (0.4, 1.0, 0.4), (100.0, 0.4, 0.4), (0.4, 100.0, 0.4), (0.0, 0.7, 0.0),
-    (1.2, 1.2, 1.2), (1.2, 2.0, 1.2), (1.0, 1.0, 1.0), (1e6, 1.3, 1.3), (1.0, 1e6, 1.0),
-])
+@pytest.mark.parametrize(
+    ('mu_box', 'mu_ramp', 'mu'),
+    [
+        (0.5, 0.5, 0.5),
+        (0.3, 0.3, 0.3),
+        (0.3, 0.8, 0.3),
+        (0.9, 0.4, 0.4),
+        (1.0, 0.4, 0.4),
+        (0.4, 1.0, 0.4),
+        (100.0, 0.4, 0.4),
+        (0.4, 100.0, 0.4),
+        (0.0, 0.7, 0.0),
+        (1.2, 1.2, 1.2),
+        (1.2, 2.0, 1.2),
+        (1.0, 1.0, 1.0),
+        (1e6, 1.3, 1.3),
+        (1.0, 1e6, 1.0),
+    ],
+)
 def test_sliding_friction_is_that_of_the_lesser_mu(mu_box, mu_ramp, mu):
     holds, slides = math.atan(mu) - 0.02, math.atan(mu) + 0.1
     if mu:
@@ -49,9 +63,15 @@ def test_sliding_friction_is_that_of_the_lesser_mu(mu_box, mu_ramp, mu):
     assert acceleration_down(slides, mu_box, mu_ramp) == pytest.approx(expected, rel=0.02)
 
 
-@pytest.mark.parametrize(('cone', 'mu', 'speed'), [
-    (False, 0.5, 1.5), (True, 0.5, 1.5), (False, 0.2, 1.0), (True, 0.2, 1.0),
-])
+@pytest.mark.parametrize(
+    ('cone', 'mu', 'speed'),
+    [
+        (False, 0.5, 1.5),
+        (True, 0.5, 1.5),
+        (False, 0.2, 1.0),
+        (True, 0.2, 1.0),
+    ],
+)
 def test_friction_on_the_diagonal_is_that_of_pyramid_or_cone(cone, mu, speed):
     along = math.sqrt(0.5) * speed
     with empty_world() as world:
@@ -77,10 +97,18 @@ def test_high_friction_resists_a_strong_push(mu):
         assert abs(acceleration_down(math.radians(55.0), mu, mu)) < 1e-3
 
 
-@pytest.mark.parametrize(('mu_low', 'mu_high', 'mu'), [
-    (0.5, 0.5, 0.5), (0.3, 0.6, 0.3), (0.6, 0.3, 0.3), (1.0, 0.4, 0.4), (0.4, 1.0, 0.4),
-    (100.0, 0.5, 0.5), (100.0, 1.0, 1.0),
-])
+@pytest.mark.parametrize(
+    ('mu_low', 'mu_high', 'mu'),
+    [
+        (0.5, 0.5, 0.5),
+        (0.3, 0.6, 0.3),
+        (0.6, 0.3, 0.3),
+        (1.0, 0.4, 0.4),
+        (0.4, 1.0, 0.4),
+        (100.0, 0.5, 0.5),
+        (100.0, 1.0, 1.0),
+    ],
+)
 def test_friction_between_movable_boxes_is_that_of_the_lesser_mu(mu_low, mu_high, mu):
     with empty_world() as world:
         low = world.spawn(rough(mu_low, '8 2 0.1', 20.0), 'low', Pose((0.0, 0.0, 0.05)))
@@ -106,8 +134,9 @@ def test_slippery_floor_applies_to_models_spawned_later():
         world.delete('ground_plane')
         boxes = [world.spawn(rough(0.3), 'early', Pose((0.0, 0.0, 0.05)))]
         world.spawn(replace(ground, links=(link,)), 'ground_plane', Pose())
-        boxes += [world.spawn(rough(mu), f'box{mu}', Pose((0.0, 2.0 + mu, 0.05)))
-                  for mu in (1.0, 5.0)]
+        boxes += [
+            world.spawn(rough(mu), f'box{mu}', Pose((0.0, 2.0 + mu, 0.05))) for mu in (1.0, 5.0)
+        ]
         boxes.append(world.spawn(urdf_spec(ball('ball', 0.05, 1.0)), 'ball', Pose((0, -2, 0.05))))
         for _ in range(SECOND):
             for box in boxes[:3]:
@@ -161,6 +190,9 @@ def test_surface_of_mu_1_is_one_contact_part_and_others_are_two():
             assert len(box.body.surfaces['box']) == parts
         world.run(100)
         client = world.engine._client
-        touching = [len(pybullet.getContactPoints(model.body.bodies[0], physicsClientId=client))
-                    for name, model in world.models.items() if name != 'ground_plane']
+        touching = [
+            len(pybullet.getContactPoints(model.body.bodies[0], physicsClientId=client))
+            for name, model in world.models.items()
+            if name != 'ground_plane'
+        ]
         assert touching == [4, 4, 4]

@@ -66,8 +66,10 @@ def test_each_quantity_of_a_drive_agrees_with_gazebo(name, command):
 
 
 def test_mechanics_of_the_articles_robot_is_rolling_without_slip():
-    straight, turn = (mechanics()[f'article {command}']['quantities']
-                      for command in ('straight_v0.5', 'turn_w1.0'))
+    straight, turn = (
+        mechanics()[f'article {command}']['quantities']
+        for command in ('straight_v0.5', 'turn_w1.0')
+    )
     assert straight['v'] == pytest.approx(ROLLING * 0.5, rel=1e-3)
     assert turn['w'] == pytest.approx(TURNING * 1.0, rel=1e-3)
 

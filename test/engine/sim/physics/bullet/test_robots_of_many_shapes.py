@@ -21,13 +21,20 @@ def robot(ixz):
     """
     shapes = [(f'0 0 {z}', '<box size="0.4 0.3 0.01"/>') for z in (0.15, 0.35)]
     shapes += [('-0.15 0 0.07', '<sphere radius="0.07"/>')]
-    shapes += [(f'{x} {y} 0.25', '<cylinder radius="0.02" length="0.18"/>')
-               for x in (-0.15, -0.05, 0.05, 0.15) for y in (-0.1, 0.1)]
-    collisions = ''.join(f'<collision><origin xyz="{at}"/><geometry>{shape}</geometry></collision>'
-                         for at, shape in shapes)
-    body = (f'<link name="base"><inertial><origin xyz="0 0 0.15"/><mass value="5"/><inertia '
-            f'ixx="0.1" iyy="0.12" izz="0.15" ixy="0" ixz="{ixz}" iyz="0"/></inertial>'
-            f'{collisions}</link>')
+    shapes += [
+        (f'{x} {y} 0.25', '<cylinder radius="0.02" length="0.18"/>')
+        for x in (-0.15, -0.05, 0.05, 0.15)
+        for y in (-0.1, 0.1)
+    ]
+    collisions = ''.join(
+        f'<collision><origin xyz="{at}"/><geometry>{shape}</geometry></collision>'
+        for at, shape in shapes
+    )
+    body = (
+        f'<link name="base"><inertial><origin xyz="0 0 0.15"/><mass value="5"/><inertia '
+        f'ixx="0.1" iyy="0.12" izz="0.15" ixy="0" ixz="{ixz}" iyz="0"/></inertial>'
+        f'{collisions}</link>'
+    )
     for side, y in (('left', 0.2), ('right', -0.2)):
         body += wheel(side, f'{side}_joint', 0.1, 0.04, 0.5, f'0.1 {y} 0.1')
     return urdf_spec(body)
@@ -62,9 +69,14 @@ def test_overturned_robot_lies_on_its_plates(world, spec, roll):
     assert min(z for _, _, z in corners(model)) == pytest.approx(0.0, abs=1e-3)
 
 
-@pytest.mark.parametrize(('height', 'turn'), [
-    (0.5, (0.0, 0.0, 0.0)), (2.0, (0.0, -0.8, 0.0)), (2.0, (-2.73, -3.06, 2.12)),
-])
+@pytest.mark.parametrize(
+    ('height', 'turn'),
+    [
+        (0.5, (0.0, 0.0, 0.0)),
+        (2.0, (0.0, -0.8, 0.0)),
+        (2.0, (-2.73, -3.06, 2.12)),
+    ],
+)
 def test_contacts_are_found_before_it_hits_the_floor(world, height, turn):
     model = world.spawn(robot_spec(), 'robot', Pose((0.0, 0.0, height), from_rpy(*turn)))
     deepest = 0.0

@@ -28,14 +28,18 @@ ARM = (
 
 def motion(world):
     """Return the states of all links and joints."""
-    return [(world.engine.link_states(model.body), world.engine.joint_states(model.body))
-            for model in world.models.values()]
+    return [
+        (world.engine.link_states(model.body), world.engine.joint_states(model.body))
+        for model in world.models.values()
+    ]
 
 
 def states(world):
     """Return the states of all links and joints, and the contacts."""
-    return motion(world), [[contact[2:] for contact in world.engine.contacts(model.body)]
-                           for model in world.models.values()]
+    return motion(world), [
+        [contact[2:] for contact in world.engine.contacts(model.body)]
+        for model in world.models.values()
+    ]
 
 
 def go_on(world, steps=1000):
@@ -98,9 +102,14 @@ def test_continuation_from_a_snapshot_is_bit_identical(seed, boxes, robots):
 
 # PyBullet reorders the contact points of a body of several shapes, such as the robot. The box
 # is in worlds of its own, since the solver's iterations are common to all and follow the motors.
-@pytest.mark.parametrize(('make_spec', 'tolerances'), [
-    (lambda: urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), (0.0, 0.0)), (robot_spec, (1e-6, 1e-4)),
-], ids=['box', 'robot'])
+@pytest.mark.parametrize(
+    ('make_spec', 'tolerances'),
+    [
+        (lambda: urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), (0.0, 0.0)),
+        (robot_spec, (1e-6, 1e-4)),
+    ],
+    ids=['box', 'robot'],
+)
 def test_taking_a_snapshot_hardly_changes_the_motion(make_spec, tolerances):
     with empty_world() as world, empty_world() as other:
         models = [one.spawn(make_spec(), 'thing', SPAWN_POSE) for one in (world, other)]
@@ -204,8 +213,10 @@ def test_restore_costs_as_much_as_some_steps():
         snapshot = world.engine.snapshot()
         restores, steps = [], []
         for _ in range(9):
-            for times, work in ((restores, lambda: world.engine.restore(snapshot)),
-                                (steps, lambda: world.engine.step(100))):
+            for times, work in (
+                (restores, lambda: world.engine.restore(snapshot)),
+                (steps, lambda: world.engine.step(100)),
+            ):
                 begin = time.process_time()
                 work()
                 times.append(time.process_time() - begin)

@@ -25,8 +25,11 @@ SPRUNG = '<gazebo reference="{}"><springStiffness>{}</springStiffness></gazebo>'
 def weight(mass, inertia=1.0, **joint):
     """Return a mass on a vertical joint of the world."""
     link = LinkSpec('weight', inertial=Inertial(mass, Pose(), inertia, inertia, inertia))
-    return ModelSpec('weight', (link,), (
-        JointSpec('joint', joint.pop('type', PRISMATIC), 'world', 'weight', **joint),))
+    return ModelSpec(
+        'weight',
+        (link,),
+        (JointSpec('joint', joint.pop('type', PRISMATIC), 'world', 'weight', **joint),),
+    )
 
 
 def states(spec, steps, velocity=0.0, **physics):
@@ -46,9 +49,14 @@ def states(spec, steps, velocity=0.0, **physics):
         world.close()
 
 
-@pytest.mark.parametrize(('mass', 'stiffness', 'reference', 'step'), [
-    (2.0, 50.0, 0.0, 0.001), (0.5, 2000.0, 0.3, 0.001), (30.0, 200.0, -0.2, 0.004),
-])
+@pytest.mark.parametrize(
+    ('mass', 'stiffness', 'reference', 'step'),
+    [
+        (2.0, 50.0, 0.0, 0.001),
+        (0.5, 2000.0, 0.3, 0.001),
+        (30.0, 200.0, -0.2, 0.004),
+    ],
+)
 def test_mass_on_a_spring_oscillates_without_loss(mass, stiffness, reference, step):
     sag, rate = mass * GRAVITY / stiffness, math.sqrt(stiffness / mass)
     spec = weight(mass, stiffness=stiffness, reference=reference)
@@ -56,7 +64,7 @@ def test_mass_on_a_spring_oscillates_without_loss(mass, stiffness, reference, st
     way = abs(reference - sag)
     steps = round(50.0 * math.tau / rate / step)
     positions = [position for position, _ in states(spec, steps, step_size=step)]
-    for part in (positions[: steps // 50 + 1], positions[-steps // 50 - 1:]):
+    for part in (positions[: steps // 50 + 1], positions[-steps // 50 - 1 :]):
         assert max(part) == pytest.approx(reference - sag + way, abs=0.01 * way)
         assert min(part) == pytest.approx(reference - sag - way, abs=0.01 * way)
     # After fifty periods it is at zero again.
@@ -81,16 +89,32 @@ def test_damper_of_any_strength_does_not_reverse_motion(damping):
     assert velocities[50] == pytest.approx(max(0.0, 1.0 - damping * 0.1) ** 50, abs=1e-9)
 
 
-@pytest.mark.parametrize(('stiffness', 'damping'), [
-    (1e9, 0.0), (1e9, 1e9), (20.0, 1e9), (1e3, 0.0), (0.0, 1e9),
-])
+@pytest.mark.parametrize(
+    ('stiffness', 'damping'),
+    [
+        (1e9, 0.0),
+        (1e9, 1e9),
+        (20.0, 1e9),
+        (1e3, 0.0),
+        (0.0, 1e9),
+    ],
+)
 @pytest.mark.parametrize('count', [2, 6, 12])
 def test_floating_chain_with_springs_is_stable(stiffness, damping, count):
     rod = Inertial(0.2, Pose((0.05, 0.0, 0.0)), 1e-4, 1e-4, 1e-4)
     links = tuple(LinkSpec(f'link{i}', Pose((0.1 * i, 0.0, 0.0)), rod) for i in range(count))
-    joints = tuple(JointSpec(
-        f'joint{i}', REVOLUTE, f'link{i - 1}', f'link{i}', axis=(0.0, i % 2, 1.0 - i % 2),
-        stiffness=stiffness, damping=damping) for i in range(1, count))
+    joints = tuple(
+        JointSpec(
+            f'joint{i}',
+            REVOLUTE,
+            f'link{i - 1}',
+            f'link{i}',
+            axis=(0.0, i % 2, 1.0 - i % 2),
+            stiffness=stiffness,
+            damping=damping,
+        )
+        for i in range(1, count)
+    )
     world = World(PhysicsSettings(gravity=(0.0, 0.0, 0.0)))
     try:
         model = world.spawn(ModelSpec('chain', links, joints), 'chain', HIGH)
@@ -112,13 +136,20 @@ def carriage(mass, stiffness, damping):
             f'<sphere radius="0.05"/></geometry></collision></link><joint name="joint{i}" '
             f'type="prismatic"><parent link="base"/><child link="foot{i}"/><origin xyz="{x} {y} '
             '-0.1"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1e9" velocity="99"/>'
-            f'<dynamics damping="{damping}"/></joint>') + SPRUNG.format(f'joint{i}', stiffness)
+            f'<dynamics damping="{damping}"/></joint>'
+        ) + SPRUNG.format(f'joint{i}', stiffness)
     return urdf_spec(text)
 
 
-@pytest.mark.parametrize(('mass', 'stiffness', 'damping'), [
-    (8.0, 2000.0, 50.0), (8.0, 2000.0, 1e6), (40.0, 1e4, 500.0), (1.0, 300.0, 10.0),
-])
+@pytest.mark.parametrize(
+    ('mass', 'stiffness', 'damping'),
+    [
+        (8.0, 2000.0, 50.0),
+        (8.0, 2000.0, 1e6),
+        (40.0, 1e4, 500.0),
+        (1.0, 300.0, 10.0),
+    ],
+)
 def test_deflection_of_a_sprung_body_is_weight_over_stiffness(mass, stiffness, damping):
     with empty_world() as world:
         model = world.spawn(carriage(mass, stiffness, damping), 'carriage', Pose((0.0, 0.0, 0.17)))

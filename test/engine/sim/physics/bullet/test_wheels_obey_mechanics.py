@@ -81,9 +81,15 @@ def turned(model, world, steps):
     return total
 
 
-@pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
-    (MIDDLE, 20.0, 0.5), (LIGHT, -20.0, 0.2), (HEAVY, 15.0, 0.8), (MIDDLE, 20.0, 0.0),
-])
+@pytest.mark.parametrize(
+    ('spec', 'degrees', 'speed'),
+    [
+        (MIDDLE, 20.0, 0.5),
+        (LIGHT, -20.0, 0.2),
+        (HEAVY, 15.0, 0.8),
+        (MIDDLE, 20.0, 0.0),
+    ],
+)
 def test_robot_driving_across_a_slope_does_not_slide_down(spec, degrees, speed):
     with empty_world() as world:
         frame = tilted_floor(world, roll=degrees)
@@ -96,14 +102,20 @@ def test_robot_driving_across_a_slope_does_not_slide_down(spec, degrees, speed):
         assert after[0] - before[0] > 0.7 * 3.0 * speed - 0.01
 
 
-@pytest.mark.parametrize(('spec', 'degrees', 'speed', 'heading'), [
-    (castered(0.5, 0.15, casters=1), 15.0, 1.0, 0.3), (LIGHT, 20.0, 0.5, 0.8),
-    (LIGHT, 10.0, 0.2, math.pi), (castered(1.0, 0.2), 15.0, 1.0, 0.3), (MIDDLE, -20.0, 1.0, 0.8),
-    (castered(20.0, 0.6, casters=1), 20.0, 1.0, 0.3),
-    (castered(20.0, 0.6, mu=0.1), 25.0, 0.5, 0.8),
-    # At 1 m/s^2 the upper wheel, with a quarter of the weight, would spin.
-    (castered(5.0, 0.4, casters=1, acceleration=0.2), 25.0, 0.5, 0.8),
-])
+@pytest.mark.parametrize(
+    ('spec', 'degrees', 'speed', 'heading'),
+    [
+        (castered(0.5, 0.15, casters=1), 15.0, 1.0, 0.3),
+        (LIGHT, 20.0, 0.5, 0.8),
+        (LIGHT, 10.0, 0.2, math.pi),
+        (castered(1.0, 0.2), 15.0, 1.0, 0.3),
+        (MIDDLE, -20.0, 1.0, 0.8),
+        (castered(20.0, 0.6, casters=1), 20.0, 1.0, 0.3),
+        (castered(20.0, 0.6, mu=0.1), 25.0, 0.5, 0.8),
+        # At 1 m/s^2 the upper wheel, with a quarter of the weight, would spin.
+        (castered(5.0, 0.4, casters=1, acceleration=0.2), 25.0, 0.5, 0.8),
+    ],
+)
 def test_tyres_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
     """Lateral slip along the axle; motor velocity error turns the robot slightly, without slip."""
     with empty_world() as world:
@@ -122,9 +134,15 @@ def test_tyres_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
         assert abs(yaw_of(turn.orientation)) < 0.08
 
 
-@pytest.mark.parametrize(('spec', 'degrees', 'speed'), [
-    (LIGHT, 15.0, 0.02), (LIGHT, 20.0, 0.22), (LIGHT, 12.0, 0.03), (MIDDLE, 10.0, 0.05),
-])
+@pytest.mark.parametrize(
+    ('spec', 'degrees', 'speed'),
+    [
+        (LIGHT, 15.0, 0.02),
+        (LIGHT, 20.0, 0.22),
+        (LIGHT, 12.0, 0.03),
+        (MIDDLE, 10.0, 0.05),
+    ],
+)
 def test_slow_robot_climbs_a_ramp_as_commanded_without_rolling_back(spec, degrees, speed):
     with empty_world() as world:
         frame = tilted_floor(world, pitch=-degrees)
@@ -150,10 +168,17 @@ def test_slow_commands_are_followed_on_level_ground(spec):
         assert math.dist(model.pose.position, before) / 4.0 == pytest.approx(0.01, rel=0.05)
 
 
-@pytest.mark.parametrize(('spec', 'rate'), [
-    (MIDDLE, 0.1), (MIDDLE, -0.1), (LIGHT, 0.1), (HEAVY, -0.1),
-    (castered(0.2, 0.12, casters=1), 0.1), (castered(20.0, 0.6, casters=1), -0.1),
-])
+@pytest.mark.parametrize(
+    ('spec', 'rate'),
+    [
+        (MIDDLE, 0.1),
+        (MIDDLE, -0.1),
+        (LIGHT, 0.1),
+        (HEAVY, -0.1),
+        (castered(0.2, 0.12, casters=1), 0.1),
+        (castered(20.0, 0.6, casters=1), -0.1),
+    ],
+)
 def test_slow_turns_are_followed(spec, rate):
     with empty_world() as world:
         model = placed(world, spec)
@@ -176,11 +201,20 @@ def share_turned(size, mu):
     return 1.0 if mu * caster <= most else track / (track + half)
 
 
-@pytest.mark.parametrize(('mass', 'size', 'mu', 'rate', 'yaw'), [
-    (0.2, 0.12, 1.0, 0.1, 0.4), (1.0, 0.2, 1.0, -0.1, 0.0), (1.0, 0.2, 0.9, 0.3, 0.4),
-    (5.0, 0.4, 1.0, 0.3, 0.0), (20.0, 0.6, 1.0, -0.1, 0.4), (50.0, 1.0, 1.0, 0.1, 0.0),
-    (0.2, 0.12, 0.6, 0.1, 0.4), (1.0, 0.2, 0.7, 0.3, 0.0), (5.0, 0.4, 0.6, -0.1, 0.4),
-])
+@pytest.mark.parametrize(
+    ('mass', 'size', 'mu', 'rate', 'yaw'),
+    [
+        (0.2, 0.12, 1.0, 0.1, 0.4),
+        (1.0, 0.2, 1.0, -0.1, 0.0),
+        (1.0, 0.2, 0.9, 0.3, 0.4),
+        (5.0, 0.4, 1.0, 0.3, 0.0),
+        (20.0, 0.6, 1.0, -0.1, 0.4),
+        (50.0, 1.0, 1.0, 0.1, 0.0),
+        (0.2, 0.12, 0.6, 0.1, 0.4),
+        (1.0, 0.2, 0.7, 0.3, 0.0),
+        (5.0, 0.4, 0.6, -0.1, 0.4),
+    ],
+)
 def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, mu, rate, yaw):
     with empty_world() as world:
         model = placed(world, castered(mass, size, casters=2, mu=mu), yaw=yaw)
@@ -190,9 +224,15 @@ def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, m
         assert share == pytest.approx(share_turned(size, mu), rel=0.02)
 
 
-@pytest.mark.parametrize(('spec', 'degrees', 'yaw'), [
-    (MIDDLE, 10.0, 0.0), (LIGHT, 10.0, 0.7), (LIGHT, 3.0, 0.0), (castered(20.0, 0.6), 15.0, 0.4),
-])
+@pytest.mark.parametrize(
+    ('spec', 'degrees', 'yaw'),
+    [
+        (MIDDLE, 10.0, 0.0),
+        (LIGHT, 10.0, 0.7),
+        (LIGHT, 3.0, 0.0),
+        (castered(20.0, 0.6), 15.0, 0.4),
+    ],
+)
 def test_a_parked_robot_does_not_creep(spec, degrees, yaw):
     with empty_world() as world:
         model = placed(world, spec, tilted_floor(world, pitch=-degrees), yaw)
@@ -206,19 +246,32 @@ def tall(mass=4.0, size=0.4):
     """Return a robot with a tall body: when overturned, its wheels turn in the air."""
     body = box('base', (size, 0.7 * size, size), 0.9 * mass)
     for side, y in (('left', 0.4 * size), ('right', -0.4 * size)):
-        body += wheel(f'{side}_wheel', f'{side}_joint', 0.15 * size, 0.1 * size, 0.05 * mass,
-                      f'0 {y} {-0.4 * size}')
-    return urdf_spec(body + DRIVE_PLUGIN.format(
-        separation=0.8 * size, diameter=0.3 * size, torque=mass, acceleration=0.0))
+        body += wheel(
+            f'{side}_wheel',
+            f'{side}_joint',
+            0.15 * size,
+            0.1 * size,
+            0.05 * mass,
+            f'0 {y} {-0.4 * size}',
+        )
+    return urdf_spec(
+        body
+        + DRIVE_PLUGIN.format(
+            separation=0.8 * size, diameter=0.3 * size, torque=mass, acceleration=0.0
+        )
+    )
 
 
-@pytest.mark.parametrize(('mass', 'size', 'forward', 'turning'), [
-    (4.0, 0.4, 0.5, 0.0), (1.0, 0.2, 0.2, 1.0), (40.0, 0.8, -1.0, 0.0),
-])
+@pytest.mark.parametrize(
+    ('mass', 'size', 'forward', 'turning'),
+    [
+        (4.0, 0.4, 0.5, 0.0),
+        (1.0, 0.2, 0.2, 1.0),
+        (40.0, 0.8, -1.0, 0.0),
+    ],
+)
 @pytest.mark.parametrize('degrees', [0.0, 5.0])
-def test_overturned_robot_with_turning_wheels_stays_in_place(
-    mass, size, forward, turning, degrees
-):
+def test_overturned_robot_with_turning_wheels_stays_in_place(mass, size, forward, turning, degrees):
     with empty_world() as world:
         frame = tilted_floor(world, roll=degrees)
         pose = Pose((0.0, 0.0, size / 2.0 + 0.001), from_rpy(math.pi, 0.0, 0.0))
@@ -230,26 +283,39 @@ def test_overturned_robot_with_turning_wheels_stays_in_place(
             if not degrees:
                 push = (0.0, 0.3 * mass * GRAVITY, 0.0)
                 x, y, z = model.pose.position
-                world.engine.apply_wrench(model.body, 'base', push, (0.0, 0.0, 0.0),
-                                  (x, y, z - 0.4 * size))
+                world.engine.apply_wrench(
+                    model.body, 'base', push, (0.0, 0.0, 0.0), (x, y, z - 0.4 * size)
+                )
             world.run(1)
         assert math.dist(model.pose.position, before) < 0.01
 
 
-BED = ('<joint name="j" type="prismatic"><parent link="world"/><child link="bed"/>'
-       '<axis xyz="1 0 0"/><limit lower="-99" upper="99" effort="1e6" velocity="99"/></joint>')
-TURNTABLE = ('<joint name="j" type="continuous"><parent link="world"/><child link="bed"/>'
-             '<axis xyz="0 0 1"/></joint>')
+BED = (
+    '<joint name="j" type="prismatic"><parent link="world"/><child link="bed"/>'
+    '<axis xyz="1 0 0"/><limit lower="-99" upper="99" effort="1e6" velocity="99"/></joint>'
+)
+TURNTABLE = (
+    '<joint name="j" type="continuous"><parent link="world"/><child link="bed"/>'
+    '<axis xyz="0 0 1"/></joint>'
+)
 
 
-@pytest.mark.parametrize(('spec', 'joint', 'moves', 'speed'), [
-    (MIDDLE, BED, 0.2, 0.05), (LIGHT, BED, -0.5, 0.02), (MIDDLE, TURNTABLE, 0.2, 0.02),
-    (LIGHT, TURNTABLE, -0.3, 0.05),
-])
+@pytest.mark.parametrize(
+    ('spec', 'joint', 'moves', 'speed'),
+    [
+        (MIDDLE, BED, 0.2, 0.05),
+        (LIGHT, BED, -0.5, 0.02),
+        (MIDDLE, TURNTABLE, 0.2, 0.02),
+        (LIGHT, TURNTABLE, -0.3, 0.05),
+    ],
+)
 def test_robot_on_a_moving_platform_moves_with_it(spec, joint, moves, speed):
     with empty_world() as world:
-        bed = world.spawn(urdf_spec('<link name="world"/>' + box('bed', (6.0, 6.0, 0.1), 500.0)
-                                    + joint), 'bed', Pose((0.0, 0.0, 0.5)))
+        bed = world.spawn(
+            urdf_spec('<link name="world"/>' + box('bed', (6.0, 6.0, 0.1), 500.0) + joint),
+            'bed',
+            Pose((0.0, 0.0, 0.5)),
+        )
         carrier = bed.links['bed']
         model = placed(world, spec, Pose((0.5, 0.0, 0.55)), yaw=0.7)
         command(model, speed, 0.0)
@@ -279,23 +345,34 @@ def touches(world, model):
     # Queried for one body, PyBullet would swap the sides of a point, but not friction.
     for point in pybullet.getContactPoints(physicsClientId=client):
         sides = [Place(point[1], point[3]), Place(point[2], point[4])]
-        own, at, sign = (sides[0], point[5], 1.0) if sides[0] in owners else (
-            sides[1], point[6], -1.0)
+        own, at, sign = (
+            (sides[0], point[5], 1.0) if sides[0] in owners else (sides[1], point[6], -1.0)
+        )
         pose, (linear, angular) = world.engine.link_state(model.body, owners[own])
         origin = subtract(pose.position, tuple(0.001 * v for v in linear))  # when it touched
         mu = math.prod(pybullet.getDynamicsInfo(*side, client)[1] for side in sides)
         slip = add(linear, cross(angular, subtract(at, origin)))
         one, two = sign * point[10], sign * point[12]
-        yield Touch(mu * point[9], max(abs(one), abs(two)),
-                    one * dot(point[11], slip) + two * dot(point[13], slip))
+        yield Touch(
+            mu * point[9],
+            max(abs(one), abs(two)),
+            one * dot(point[11], slip) + two * dot(point[13], slip),
+        )
 
 
 @pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])
 def test_friction_never_accelerates_a_sliding_robot(spec, heading):
     with empty_world() as world:
         model = placed(world, spec, yaw=heading)
-        model.set_twist(Twist((0.3 * math.cos(heading) - 0.4 * math.sin(heading),
-                               0.3 * math.sin(heading) + 0.4 * math.cos(heading), 0.0)))
+        model.set_twist(
+            Twist(
+                (
+                    0.3 * math.cos(heading) - 0.4 * math.sin(heading),
+                    0.3 * math.sin(heading) + 0.4 * math.cos(heading),
+                    0.0,
+                )
+            )
+        )
         fastest = math.hypot(*model.twist.linear[:2])
         for _ in range(200):
             world.run(1)
@@ -303,13 +380,17 @@ def test_friction_never_accelerates_a_sliding_robot(spec, heading):
 
 
 # Robots on one caster tip onto their front edge and back when they start backwards.
-@pytest.mark.parametrize(('spec', 'heading', 'degrees', 'commands'), [
-    (LIGHT, 0.4, 0.0, ((0.5, 0.0), (-0.5, 0.0))), (LIGHT, 0.4, 12.0, ((1.0, 1.0), (-1.0, 0.0))),
-    (MIDDLE, 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
-    (castered(5.0, 0.4, casters=1, acceleration=0.0), 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
-    (HEAVY, 0.0, 0.0, ((0.0, 1.5), (0.5, 0.0))),
-    (robot_spec(), 0.4, 0.0, ((-0.5, 0.0), (0.5, 0.0))),
-])
+@pytest.mark.parametrize(
+    ('spec', 'heading', 'degrees', 'commands'),
+    [
+        (LIGHT, 0.4, 0.0, ((0.5, 0.0), (-0.5, 0.0))),
+        (LIGHT, 0.4, 12.0, ((1.0, 1.0), (-1.0, 0.0))),
+        (MIDDLE, 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
+        (castered(5.0, 0.4, casters=1, acceleration=0.0), 1.1, 0.0, ((1.0, 1.0), (-1.0, 0.0))),
+        (HEAVY, 0.0, 0.0, ((0.0, 1.5), (0.5, 0.0))),
+        (robot_spec(), 0.4, 0.0, ((-0.5, 0.0), (0.5, 0.0))),
+    ],
+)
 def test_friction_is_within_its_limit_and_adds_no_energy(spec, heading, degrees, commands):
     """At most mu N per contact, except for one that loses its load within the step."""
     with empty_world() as world:
@@ -335,16 +416,32 @@ def test_friction_is_within_its_limit_and_adds_no_energy(spec, heading, degrees,
 
 def soft(spec, kp):
     """Return a robot with a contact stiffness of its wheels [N/m]."""
-    return replace(spec, links=tuple(
-        replace(one, collisions=tuple(
-            replace(shape, surface=replace(shape.surface, kp=kp))
-            if isinstance(shape.geometry, Cylinder) else shape for shape in one.collisions))
-        for one in spec.links))
+    return replace(
+        spec,
+        links=tuple(
+            replace(
+                one,
+                collisions=tuple(
+                    replace(shape, surface=replace(shape.surface, kp=kp))
+                    if isinstance(shape.geometry, Cylinder)
+                    else shape
+                    for shape in one.collisions
+                ),
+            )
+            for one in spec.links
+        ),
+    )
 
 
-@pytest.mark.parametrize(('spec', 'kp', 'heading'), [
-    (LIGHT, 1e3, 0.0), (LIGHT, 1e3, 0.6), (MIDDLE, 5e3, 0.4), (LIGHT, 1e5, 1.0),
-])
+@pytest.mark.parametrize(
+    ('spec', 'kp', 'heading'),
+    [
+        (LIGHT, 1e3, 0.0),
+        (LIGHT, 1e3, 0.6),
+        (MIDDLE, 5e3, 0.4),
+        (LIGHT, 1e5, 1.0),
+    ],
+)
 def test_a_robot_on_soft_wheels_drives_straight(spec, kp, heading):
     with empty_world() as world:
         model = placed(world, soft(spec, kp), yaw=heading)
@@ -357,16 +454,35 @@ def test_a_robot_on_soft_wheels_drives_straight(spec, kp, heading):
 
 def on_light_wheels(mass, wheel_mass, size):
     spec = castered(mass, size, casters=1)
-    return replace(spec, links=tuple(
-        replace(one, inertial=replace(one.inertial, mass=wheel_mass, **{
-            key: getattr(one.inertial, key) * wheel_mass / one.inertial.mass
-            for key in ('ixx', 'iyy', 'izz')
-        })) if 'wheel' in one.name else one for one in spec.links))
+    return replace(
+        spec,
+        links=tuple(
+            replace(
+                one,
+                inertial=replace(
+                    one.inertial,
+                    mass=wheel_mass,
+                    **{
+                        key: getattr(one.inertial, key) * wheel_mass / one.inertial.mass
+                        for key in ('ixx', 'iyy', 'izz')
+                    },
+                ),
+            )
+            if 'wheel' in one.name
+            else one
+            for one in spec.links
+        ),
+    )
 
 
-@pytest.mark.parametrize(('mass', 'wheel_mass', 'size', 'speed'), [
-    (100.0, 0.03, 1.0, 0.22), (50.0, 0.05, 0.8, 0.4), (20.0, 0.02, 0.5, 0.1),
-])
+@pytest.mark.parametrize(
+    ('mass', 'wheel_mass', 'size', 'speed'),
+    [
+        (100.0, 0.03, 1.0, 0.22),
+        (50.0, 0.05, 0.8, 0.4),
+        (20.0, 0.02, 0.5, 0.1),
+    ],
+)
 def test_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, speed):
     with empty_world() as world:
         model = placed(world, on_light_wheels(mass, wheel_mass, size))
@@ -378,14 +494,23 @@ def test_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, spee
 
 
 @pytest.mark.parametrize('plugins', [True, False], ids=['driven', 'bare'])
-@pytest.mark.parametrize(('spec', 'sunk'), [
-    (MIDDLE, 0.1), (MIDDLE, 0.2), (LIGHT, 0.03), (LIGHT, 0.1), (HEAVY, 0.05), (HEAVY, 0.5),
-])
+@pytest.mark.parametrize(
+    ('spec', 'sunk'),
+    [
+        (MIDDLE, 0.1),
+        (MIDDLE, 0.2),
+        (LIGHT, 0.03),
+        (LIGHT, 0.1),
+        (HEAVY, 0.05),
+        (HEAVY, 0.5),
+    ],
+)
 def test_robot_spawned_in_the_floor_rises_without_a_jump(spec, sunk, plugins):
     rest = spec_height(spec) - 0.001
     with empty_world() as world:
-        model = world.spawn(spec if plugins else replace(spec, plugins=()), 'robot',
-                            Pose((0.0, 0.0, rest - sunk)))
+        model = world.spawn(
+            spec if plugins else replace(spec, plugins=()), 'robot', Pose((0.0, 0.0, rest - sunk))
+        )
         for _ in range(2000):
             world.run(2)
             pose, twist = model.state()
@@ -395,9 +520,15 @@ def test_robot_spawned_in_the_floor_rises_without_a_jump(spec, sunk, plugins):
         assert model.pose.position[2] == pytest.approx(rest, abs=0.01)
 
 
-@pytest.mark.parametrize(('spec', 'turning'), [
-    (robot_spec(), 1.0), (robot_spec(), -0.6), (MIDDLE, 1.5), (LIGHT, -1.0),
-])
+@pytest.mark.parametrize(
+    ('spec', 'turning'),
+    [
+        (robot_spec(), 1.0),
+        (robot_spec(), -0.6),
+        (MIDDLE, 1.5),
+        (LIGHT, -1.0),
+    ],
+)
 def test_turning_robot_stops_at_once_on_command(spec, turning):
     with empty_world() as world:
         model = world.spawn(spec, 'robot', SPAWN_POSE)
@@ -418,20 +549,29 @@ def test_turning_robot_stops_at_once_on_command(spec, turning):
 def burger(mu, lean):
     """Return a small robot on two wheels and a caster with friction mu; wheels tilt by `lean`."""
     body = box('base', (0.14, 0.14, 0.05), 0.8) + ball('caster', 0.005, 0.005)
-    body += ('<joint name="caster_joint" type="fixed"><parent link="base"/><child link="caster"/>'
-             '<origin xyz="-0.06 0 -0.028"/></joint>') + surface('caster', mu)
+    body += (
+        '<joint name="caster_joint" type="fixed"><parent link="base"/><child link="caster"/>'
+        '<origin xyz="-0.06 0 -0.028"/></joint>'
+    ) + surface('caster', mu)
     for side, y in (('left', 0.08), ('right', -0.08)):
         name = f'{side}_wheel'
         body += wheel(name, f'{side}_joint', 0.033, 0.018, 0.03, f'0 {y} 0').replace(
-            f'rpy="{-math.pi / 2} 0 0"', f'rpy="{-math.pi / 2 + lean} 0 0"')
+            f'rpy="{-math.pi / 2} 0 0"', f'rpy="{-math.pi / 2 + lean} 0 0"'
+        )
         body += surface(name, mu)
-    return urdf_spec(body + DRIVE_PLUGIN.format(
-        separation=0.16, diameter=0.066, torque=10.0, acceleration=1.0))
+    return urdf_spec(
+        body + DRIVE_PLUGIN.format(separation=0.16, diameter=0.066, torque=10.0, acceleration=1.0)
+    )
 
 
-@pytest.mark.parametrize(('mu', 'lean', 'turning'), [
-    (0.1, 8e-4, 0.314), (0.1, 0.0, -0.314), (0.3, 8e-4, 1.0),
-])
+@pytest.mark.parametrize(
+    ('mu', 'lean', 'turning'),
+    [
+        (0.1, 8e-4, 0.314),
+        (0.1, 0.0, -0.314),
+        (0.3, 8e-4, 1.0),
+    ],
+)
 def test_slippery_wheels_turn_a_robot_on_the_spot_as_commanded(mu, lean, turning):
     with empty_world() as world:
         model = placed(world, burger(mu, lean))
@@ -456,7 +596,8 @@ def skid_steer(kp, flipped=False):
             f'<leftJoint>{names["left"]}</leftJoint><rightJoint>{names["right"]}</rightJoint>'
             '<wheelSeparation>0.44</wheelSeparation><wheelDiameter>0.2</wheelDiameter>'
             '<wheelTorque>20</wheelTorque><wheelAcceleration>1.8</wheelAcceleration>'
-            '<updateRate>50</updateRate></plugin></gazebo>')
+            '<updateRate>50</updateRate></plugin></gazebo>'
+        )
     return urdf_spec(body + drives)
 
 
@@ -482,12 +623,15 @@ def long_skid_steer(mu):
             name = f'{side}{end}'
             body += wheel(name, f'{name}Joint', 0.045, WHEEL_WIDTH, 0.5, f'{x} {y} -0.1')
             body += surface(name, mu)
-    joints = ''.join(f'<{name}Joint>{name}Joint</{name}Joint>'
-                     for name in ('leftFront', 'rightFront', 'leftRear', 'rightRear'))
+    joints = ''.join(
+        f'<{name}Joint>{name}Joint</{name}Joint>'
+        for name in ('leftFront', 'rightFront', 'leftRear', 'rightRear')
+    )
     return urdf_spec(
         f'{body}<gazebo><plugin name="drive" filename="libgazebo_ros_skid_steer_drive.so">{joints}'
         f'<wheelSeparation>{SEPARATION}</wheelSeparation><wheelDiameter>0.09</wheelDiameter>'
-        '<torque>50</torque><updateRate>100</updateRate></plugin></gazebo>')
+        '<torque>50</torque><updateRate>100</updateRate></plugin></gazebo>'
+    )
 
 
 def turning_by_a_pyramid(heading):
@@ -498,9 +642,12 @@ def turning_by_a_pyramid(heading):
     along the world's axes. The sum of its moments decreases with w; the rate is where it vanishes.
     """
     c, s = math.cos(heading), math.sin(heading)
-    points = [(x, y + across) for x in (HALF_LENGTH, -HALF_LENGTH)
-              for y in (HALF_TRACK, -HALF_TRACK)
-              for across in (-WHEEL_WIDTH / 2.0, 0.0, WHEEL_WIDTH / 2.0)]
+    points = [
+        (x, y + across)
+        for x in (HALF_LENGTH, -HALF_LENGTH)
+        for y in (HALF_TRACK, -HALF_TRACK)
+        for across in (-WHEEL_WIDTH / 2.0, 0.0, WHEEL_WIDTH / 2.0)
+    ]
     low, high = 0.0, 1.0
     while high - low > 1e-6:
         rate = (low + high) / 2.0
@@ -556,8 +703,9 @@ def test_swapped_joints_drive_equally_straight(spec):
     sides = {'leftJoint': 'rightJoint', 'rightJoint': 'leftJoint'}
     for child in plugin.element.children:
         children.append(replace(child, tag=sides.get(child.tag, child.tag)))
-    swapped = replace(spec, plugins=(replace(
-        plugin, element=replace(plugin.element, children=tuple(children))),))
+    swapped = replace(
+        spec, plugins=(replace(plugin, element=replace(plugin.element, children=tuple(children))),)
+    )
     yaws = []
     for one in (spec, swapped):
         with empty_world() as world:
@@ -583,8 +731,9 @@ def test_wheel_angles_of_transform_joint_states_and_odometry_agree(spec, driven)
     tags = {'odometrySource': 'encoder', 'publishWheelTF': 'true', 'publishWheelJointState': 'true'}
     (plugin,) = spec.plugins
     children = (*plugin.element.children, *(Element(tag, text) for tag, text in tags.items()))
-    spec = replace(spec, plugins=(replace(
-        plugin, element=replace(plugin.element, children=children)),))
+    spec = replace(
+        spec, plugins=(replace(plugin, element=replace(plugin.element, children=children)),)
+    )
     with empty_world() as world:
         model = placed(world, spec)
         drive = next(iter(model.plugins.values()))
@@ -601,8 +750,10 @@ def test_wheel_angles_of_transform_joint_states_and_odometry_agree(spec, driven)
         for transform, angle in zip(told[FrameTransform][-2:], (left, right), strict=True):
             apart = math.remainder(axle_angle(transform) - angle, math.tau)
             assert abs(apart) < 1e-9
-        ways = [(now - then) * drive.wheel_diameter / 2.0
-                for now, then in zip((left, right), start, strict=True)]
+        ways = [
+            (now - then) * drive.wheel_diameter / 2.0
+            for now, then in zip((left, right), start, strict=True)
+        ]
         turn = (ways[1] - ways[0]) / drive.wheel_separation
         yaw = yaw_of(told[Odometry][-1].pose.orientation)
         assert math.remainder(yaw - turn, math.tau) == pytest.approx(0.0, abs=1e-9)

@@ -61,5 +61,8 @@ def test_joint_speeds_and_encoders_of_a_steered_tricycle_agree_with_the_recordin
     assert np.hypot(linear[0], linear[1]) == pytest.approx(0.4347, rel=FREE)
     assert angular[2] == pytest.approx(-0.4229, rel=1.5 * FREE)  # the wrong way round, as recorded
     assert {(one.parent, one.child) for one in found['wheel_transform']} == {
-        ('base_footprint', 'steer_joint'), ('fork_link', 'front_joint'),
-        ('base_footprint', 'left_joint'), ('base_footprint', 'right_joint')}
+        ('base_footprint', 'steer_joint'),
+        ('fork_link', 'front_joint'),
+        ('base_footprint', 'left_joint'),
+        ('base_footprint', 'right_joint'),
+    }

@@ -18,14 +18,17 @@ HECTOR, RIDGEBACK = 'gazebo_ros_force_based_move', 'ridgeback_ros_force_based_mo
 
 def box(library=HECTOR, base='base_link', tags=''):
     """Return a model without gravity that only the plugin moves."""
-    return load_urdf(f"""<robot name="box"><link name="base_link"><inertial><mass value="{MASS}"/>
+    return load_urdf(
+        f"""<robot name="box"><link name="base_link"><inertial><mass value="{MASS}"/>
         <inertia ixx="2" iyy="2" izz="{INERTIA}" ixy="0" ixz="0" iyz="0"/></inertial></link>
         <gazebo reference="base_link"><turnGravityOff>true</turnGravityOff></gazebo>
         <gazebo><plugin name="move" filename="lib{library}.so">
         <robotBaseFrame>{base}</robotBaseFrame><x_velocity_p_gain>{GAIN}</x_velocity_p_gain>
         <y_velocity_p_gain>{GAIN}</y_velocity_p_gain>
         <yaw_velocity_p_gain>{YAW_GAIN}</yaw_velocity_p_gain>{tags}
-        </plugin></gazebo></robot>""", 'box')[0]
+        </plugin></gazebo></robot>""",
+        'box',
+    )[0]
 
 
 def approached(wanted, gain, inertia, steps):
@@ -41,7 +44,8 @@ def test_the_velocity_approaches_the_command_in_the_models_own_axes():
         x, y = (approached(wanted, GAIN, MASS, 50) for wanted in (0.5, 0.2))
         cos, sin = math.cos(YAW), math.sin(YAW)
         assert model.twist.linear == pytest.approx(
-            (cos * x - sin * y, sin * x + cos * y, 0.0), abs=1e-6)
+            (cos * x - sin * y, sin * x + cos * y, 0.0), abs=1e-6
+        )
         model.plugin('move').command(0.0, 0.4)
         world.run(2000)
         assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
@@ -54,14 +58,18 @@ def test_the_yaw_rate_approaches_the_command():
         model.plugin('move').command(0.0, 0.4)
         world.run(50)
         assert model.twist.angular[2] == pytest.approx(
-            approached(0.4, YAW_GAIN, INERTIA, 50), rel=1e-5)
+            approached(0.4, YAW_GAIN, INERTIA, 50), rel=1e-5
+        )
 
 
-@pytest.mark.parametrize(('library', 'tags', 'moves'), [
-    (HECTOR, '', True),
-    (RIDGEBACK, '', False),
-    (RIDGEBACK, '<cmdVelTimeOut>30</cmdVelTimeOut>', True),
-])
+@pytest.mark.parametrize(
+    ('library', 'tags', 'moves'),
+    [
+        (HECTOR, '', True),
+        (RIDGEBACK, '', False),
+        (RIDGEBACK, '<cmdVelTimeOut>30</cmdVelTimeOut>', True),
+    ],
+)
 def test_a_command_of_ridgebacks_plugin_expires(library, tags, moves):
     with closing(World()) as world:
         model = world.spawn(box(library, tags=tags), 'box', Pose((0.0, 0.0, 1.0)))

@@ -70,11 +70,18 @@ def test_numbers_that_are_not_finite_are_rejected():
             plugin.command((float('nan'), 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize(('tag', 'value', 'sentence'), [
-    ('bodyName', '', 'force plugin: missing <bodyName>, cannot proceed'),
-    ('topicName', '', 'force plugin: missing <topicName>, cannot proceed'),
-    ('bodyName', 'nope', "force plugin: bodyName: nope does not exist: model 'fbot' has no link"),
-])
+@pytest.mark.parametrize(
+    ('tag', 'value', 'sentence'),
+    [
+        ('bodyName', '', 'force plugin: missing <bodyName>, cannot proceed'),
+        ('topicName', '', 'force plugin: missing <topicName>, cannot proceed'),
+        (
+            'bodyName',
+            'nope',
+            "force plugin: bodyName: nope does not exist: model 'fbot' has no link",
+        ),
+    ],
+)
 def test_plugin_with_invalid_tags_is_left_out_with_an_error(caplog, tag, value, sentence):
     with closing(World()) as world:
         model = world.spawn(spec(**{tag: value}), 'fbot', Pose())

@@ -69,8 +69,9 @@ def test_pose_is_output_in_each_step_while_it_follows(world):
     assert readings[-1].pose == plugin.model.pose
 
 
-@pytest.mark.parametrize('turn', [(0.0, 0.0, 1.0), (0.5, -0.4, 2.0), (0.0, 3.0, 0.0),
-                                  (0.0, 0.0, -3.1)])
+@pytest.mark.parametrize(
+    'turn', [(0.0, 0.0, 1.0), (0.5, -0.4, 2.0), (0.0, 3.0, 0.0), (0.0, 0.0, -3.1)]
+)
 def test_link_rotates_the_shorter_way_and_comes_to_rest(world, turn):
     model = spawn(world, Pose((0.0, 0.0, 0.5)))
     goal = Pose((0.0, 0.0, 0.5), from_rpy(*turn))
@@ -85,9 +86,16 @@ def test_link_rotates_the_shorter_way_and_comes_to_rest(world, turn):
 
 @pytest.mark.parametrize(('mass', 'inertia'), [(0.01, 1e-6), (0.1, 1e-5), (1e-3, 1e-7)])
 def test_light_link_is_stable(world, caplog, mass, inertia):
-    model = spawn(world, Pose(), lambda text: text.replace(
-        'mass value="5"', f'mass value="{mass}"').replace('ixx="0.0542"', f'ixx="{inertia}"')
-        .replace('iyy="0.0833"', f'iyy="{inertia}"').replace('izz="0.1042"', f'izz="{inertia}"'))
+    model = spawn(
+        world,
+        Pose(),
+        lambda text: (
+            text.replace('mass value="5"', f'mass value="{mass}"')
+            .replace('ixx="0.0542"', f'ixx="{inertia}"')
+            .replace('iyy="0.0833"', f'iyy="{inertia}"')
+            .replace('izz="0.1042"', f'izz="{inertia}"')
+        ),
+    )
     caplog.set_level(logging.ERROR)
     goal = Pose((1.0, 0.0, 1.0), from_rpy(0.5, 0.0, 1.0))
     model.plugin('hog').follow(goal)
@@ -98,8 +106,9 @@ def test_light_link_is_stable(world, caplog, mass, inertia):
 
 
 def test_reduced_link_itself_follows(world):
-    model = spawn(world, Pose(), lambda text: text.replace(
-        '<linkName>base_footprint', '<linkName>base_link'))
+    model = spawn(
+        world, Pose(), lambda text: text.replace('<linkName>base_footprint', '<linkName>base_link')
+    )
     plugin = model.plugin('hog')
     readings = collect(plugin.actual)
     plugin.follow(GOAL)
@@ -119,13 +128,16 @@ def test_link_follows_after_a_reset_of_time(world):
     assert not model.link('base_footprint').spec.gravity
 
 
-@pytest.mark.parametrize(('old', 'new', 'sentence'), [
-    ('<linkName>base_footprint</linkName>', '', 'missing <linkName>, cannot proceed'),
-    ('<linkName>base_footprint', '<linkName>nope', 'linkName: nope does not exist'),
-    ('<kl>200', '<kl>-1', '<kl> and <ka> must not be negative'),
-    ('<ka>200', '<ka>much', "<ka> is 'much'; it takes a finite number"),
-    ('<gazebo>', '<gazebo><static>true</static>', "link 'base_footprint' cannot move"),
-])
+@pytest.mark.parametrize(
+    ('old', 'new', 'sentence'),
+    [
+        ('<linkName>base_footprint</linkName>', '', 'missing <linkName>, cannot proceed'),
+        ('<linkName>base_footprint', '<linkName>nope', 'linkName: nope does not exist'),
+        ('<kl>200', '<kl>-1', '<kl> and <ka> must not be negative'),
+        ('<ka>200', '<ka>much', "<ka> is 'much'; it takes a finite number"),
+        ('<gazebo>', '<gazebo><static>true</static>', "link 'base_footprint' cannot move"),
+    ],
+)
 def test_plugin_with_invalid_tags_is_left_out_with_an_error(world, caplog, old, new, sentence):
     model = spawn(world, Pose(), lambda text: text.replace(old, new))
     assert f'hand_of_god: {sentence}' in caplog.text

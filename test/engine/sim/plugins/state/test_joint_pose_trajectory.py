@@ -14,9 +14,10 @@ from rosbots_description.sim.runtime.world import World
 
 HALF = 500_000_000  # [ns]
 BEGAN = 30.417  # [s] start of the trajectory, estimated: it was not recorded
-PLUGIN = ('<gazebo><plugin name="jpt" filename="libgazebo_ros_joint_pose_trajectory.so"/></gazebo>')
+PLUGIN = '<gazebo><plugin name="jpt" filename="libgazebo_ros_joint_pose_trajectory.so"/></gazebo>'
 ARM = (
-    box('base', (1.0, 1.0, 1.0), 10.0) + link('rod', '<sphere radius="0.1"/>', 1.0, (0.1, 0.1, 0.1))
+    box('base', (1.0, 1.0, 1.0), 10.0)
+    + link('rod', '<sphere radius="0.1"/>', 1.0, (0.1, 0.1, 0.1))
     + '<joint name="turn" type="continuous"><parent link="base"/><child link="rod"/>'
     '<origin xyz="0 0 2"/><axis xyz="0 0 1"/></joint>' + PLUGIN
 )
@@ -85,7 +86,10 @@ def test_forces_during_a_trajectory_have_no_effect(world, arm):
     other = world.spawn(urdf_spec(box('box', (1.0, 1.0, 1.0), 1.0)), 'box', Pose((9.0, 0.0, 5.0)))
     world.external_forces.add(
         other.link('box'),
-        lambda: other.link('box').apply_wrench((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), 0, -1)
+        lambda: other.link('box').apply_wrench((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        0,
+        -1,
+    )
     arm.plugin('jpt').play('world', 0, ['turn'], [((1.0,), HALF)])
     world.run(501)
     assert other.twist.linear[0] == pytest.approx(1e-3)
@@ -117,7 +121,8 @@ def test_positions_that_are_not_finite_are_rejected(arm):
 def test_unknown_reference_link_is_an_error_without_a_pause(world, arm, caplog, frame):
     arm.plugin('jpt').play(frame, 0, ['turn'], [((1.0,), HALF)])
     assert caplog.messages == [
-        f'ros_joint_trajectory plugin needs a reference link [{frame}] as frame_id, aborting.']
+        f'ros_joint_trajectory plugin needs a reference link [{frame}] as frame_id, aborting.'
+    ]
     world.run(2)
     assert arm.twist.linear[2] < 0.0
     assert arm.joints['turn'].position == 0.0
@@ -127,10 +132,12 @@ def test_points_of_wrong_length_are_skipped_and_unknown_joints_ignored(world, ar
     points = [((1.0,), 1_000_000), ((1.5, 9.0), 0)]
     arm.plugin('jpt').play('world', 0, ['turn', 'nope'], points)
     assert caplog.messages == [
-        "joint_pose_trajectory: model 'arm' has no joint nope; its joints: turn"]
+        "joint_pose_trajectory: model 'arm' has no joint nope; its joints: turn"
+    ]
     world.run(2)
     assert caplog.messages[1:] == [
-        'point[0] in JointTrajectory has different number of joint names[2] and positions[1].']
+        'point[0] in JointTrajectory has different number of joint names[2] and positions[1].'
+    ]
     assert arm.joints['turn'].position == 1.5
 
 

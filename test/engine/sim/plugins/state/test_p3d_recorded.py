@@ -65,8 +65,7 @@ def test_wheel_in_the_frame_of_the_body_is_as_recorded(skid4):
     found = first_reading(skid4, 'p3d_wheel')
     assert skid4.plugin('p3d_wheel').body == child
     assert found.pose.position == pytest.approx(pose.position, abs=1e-4)
-    alike = abs(sum(a * b for a, b in zip(
-        found.pose.orientation, pose.orientation, strict=True)))
+    alike = abs(sum(a * b for a, b in zip(found.pose.orientation, pose.orientation, strict=True)))
     assert 2.0 * math.acos(alike) < 2 * NEAR  # [rad] between both
     assert found.twist.linear == pytest.approx(twist.linear, abs=NEAR)
     assert found.twist.angular == pytest.approx(twist.angular, abs=5 * NEAR)
@@ -93,20 +92,26 @@ def test_in_a_strict_world_a_reduced_link_is_where_gazebo_tells_it():
     assert plugin.body == 'base_footprint'
     height = recorded('gt_lumped')[1].position[2] - at.position[2]  # -0.13 m, where +0.13 is true
     assert readings[0].pose.position == pytest.approx(
-        (*at.position[:2], at.position[2] + height), abs=1e-6)
+        (*at.position[:2], at.position[2] + height), abs=1e-6
+    )
     assert readings[0].pose.orientation == pytest.approx(at.orientation, abs=1e-6)
 
 
-P3D = ('<gazebo><plugin name="{name}" filename="libgazebo_ros_p3d.so"><topicName>t</topicName>'
-       '<bodyName>{body}</bodyName><frameName>{frame}</frameName></plugin></gazebo>')
+P3D = (
+    '<gazebo><plugin name="{name}" filename="libgazebo_ros_p3d.so"><topicName>t</topicName>'
+    '<bodyName>{body}</bodyName><frameName>{frame}</frameName></plugin></gazebo>'
+)
 PLACE = Pose((0.3, -0.2, 0.5), from_rpy(0.4, 0.2, -1.0))  # of the mast in the base
 
 
 def test_reduced_link_on_a_rotating_body_has_its_true_pose_and_twist():
-    mast = ('<joint name="m" type="fixed"><parent link="base"/><child link="mast"/>'
-            '<origin xyz="0.3 -0.2 0.5" rpy="0.4 0.2 -1.0"/></joint>')
+    mast = (
+        '<joint name="m" type="fixed"><parent link="base"/><child link="mast"/>'
+        '<origin xyz="0.3 -0.2 0.5" rpy="0.4 0.2 -1.0"/></joint>'
+    )
     plugins = P3D.format(name='mast', body='mast', frame='world') + P3D.format(
-        name='base', body='base', frame='mast')
+        name='base', body='base', frame='mast'
+    )
     spec = urdf_spec(box('base', (1.0, 1.0, 1.0), 1.0) + '<link name="mast"/>' + mast + plugins)
     at = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.5, math.pi / 3))
     with closing(World()) as world:
@@ -122,4 +127,5 @@ def test_reduced_link_on_a_rotating_body_has_its_true_pose_and_twist():
         assert mast[0].twist.linear[:2] == pytest.approx((-2.0 * y, 2.0 * x), abs=1e-3)
         back = compose(Pose(), base[0].pose)
         assert compose(Pose(true.position, true.orientation), Pose(back.position)).position == (
-            pytest.approx(model.pose.position))
+            pytest.approx(model.pose.position)
+        )

@@ -17,8 +17,10 @@ BALL = '<geometry><sphere radius="1"/></geometry>'
 
 
 def mass(kilograms):
-    return (f'<inertial><mass value="{kilograms}"/>'
-            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
+    return (
+        f'<inertial><mass value="{kilograms}"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
 
 
 def link(name, kilograms=1.0, shapes=''):
@@ -26,8 +28,10 @@ def link(name, kilograms=1.0, shapes=''):
 
 
 def joint(name, parent, child, kind='fixed', inside=''):
-    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
-            f'<child link="{child}"/>{inside}</joint>')
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
+        f'<child link="{child}"/>{inside}</joint>'
+    )
 
 
 def load(body):
@@ -63,9 +67,13 @@ def test_the_articles_base_has_the_mass_properties_measured_in_gazebo(article):
 def test_the_articles_wheels_are_children_of_the_base(article):
     left, right = article.joints
     assert (left.name, left.parent, left.child) == (
-        'wheel_left_joint', 'base_footprint', 'wheel_left_link')
+        'wheel_left_joint',
+        'base_footprint',
+        'wheel_left_link',
+    )
     assert article.link('wheel_right_link').pose == compose(
-        Pose((0.0, 0.0, 0.05)), Pose((0.15, -0.5625, 0.3), from_rpy(-1.57, 0.0, 0.0)))
+        Pose((0.0, 0.0, 0.05)), Pose((0.15, -0.5625, 0.3), from_rpy(-1.57, 0.0, 0.0))
+    )
     assert right.axis == (0.0, 0.0, 1.0)
 
 
@@ -87,12 +95,15 @@ def test_the_articles_reduced_links_have_one_parent(article):
 
 def test_shapes_are_named_and_numbered_as_in_gazebo():
     spec = load(
-        link('base', shapes=f'<collision>{BALL}</collision>'
-                            f'<collision name="own">{BALL}</collision>')
+        link(
+            'base', shapes=f'<collision>{BALL}</collision><collision name="own">{BALL}</collision>'
+        )
         + link('arm', shapes=f'<collision name="pad">{BALL}</collision><visual>{BALL}</visual>')
         + link('tip', shapes=f'<collision>{BALL}</collision><visual>{BALL}</visual>')
         + link('base_lid', shapes=f'<collision>{BALL}</collision>')
-        + joint('a', 'base', 'arm') + joint('b', 'arm', 'tip') + joint('c', 'base', 'base_lid')
+        + joint('a', 'base', 'arm')
+        + joint('b', 'arm', 'tip')
+        + joint('c', 'base', 'base_lid')
     )
     assert names(spec.links[0].collisions) == [
         'base_collision',
@@ -102,16 +113,20 @@ def test_shapes_are_named_and_numbered_as_in_gazebo():
         'base_lid_collision_4',  # begins with the parent's name, so sdformat adds no prefix
     ]
     assert names(spec.links[0].visuals) == [
-        'base_fixed_joint_lump__arm_visual', 'base_fixed_joint_lump__tip_visual_1']
+        'base_fixed_joint_lump__arm_visual',
+        'base_fixed_joint_lump__tip_visual_1',
+    ]
 
 
 def test_shapes_and_joints_are_transformed_into_the_parents_frame():
     quarter = '<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>'
     spec = load(
-        link('base') + link('arm')
+        link('base')
+        + link('arm')
         + link('hand', shapes=f'<collision><origin xyz="1 0 0"/>{BALL}</collision>')
         + link('finger')
-        + joint('a', 'base', 'arm', inside=quarter) + joint('b', 'arm', 'hand', inside=quarter)
+        + joint('a', 'base', 'arm', inside=quarter)
+        + joint('b', 'arm', 'hand', inside=quarter)
         + joint('c', 'hand', 'finger', 'continuous', '<origin xyz="0 1 0"/>')
     )
     base, finger = spec.links
@@ -122,10 +137,13 @@ def test_shapes_and_joints_are_transformed_into_the_parents_frame():
 
 
 def test_masses_in_rotated_frames_merge_by_the_parallel_axis_theorem():
-    inertial = ('<inertial><origin xyz="0 0 1"/><mass value="1"/>'
-                '<inertia ixx="1" iyy="2" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>')
+    inertial = (
+        '<inertial><origin xyz="0 0 1"/><mass value="1"/>'
+        '<inertia ixx="1" iyy="2" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
     spec = load(
-        '<link name="base"/>' + f'<link name="a">{inertial}</link><link name="b">{inertial}</link>'
+        '<link name="base"/>'
+        + f'<link name="a">{inertial}</link><link name="b">{inertial}</link>'
         + joint('ja', 'base', 'a')
         + joint('jb', 'base', 'b', inside=f'<origin rpy="{math.pi / 2} 0 0" xyz="0 1 1"/>')
     )
@@ -152,10 +170,13 @@ def test_disabled_lumping_makes_a_joint_with_zero_range():
     assert (j.type, j.lower, j.upper) == ('revolute', 0.0, 0.0)
 
 
-@pytest.mark.parametrize('tags', [
-    ('preserveFixedJoint', 'disableFixedJointLumping'),
-    ('disableFixedJointLumping', 'preserveFixedJoint'),
-])
+@pytest.mark.parametrize(
+    'tags',
+    [
+        ('preserveFixedJoint', 'disableFixedJointLumping'),
+        ('disableFixedJointLumping', 'preserveFixedJoint'),
+    ],
+)
 def test_preserve_fixed_joint_takes_precedence_over_disabled_lumping(tags):
     blocks = ''.join(kept(tag) for tag in tags)
     (j,) = load(link('a') + link('b') + joint('j', 'a', 'b') + blocks).joints
@@ -164,8 +185,11 @@ def test_preserve_fixed_joint_takes_precedence_over_disabled_lumping(tags):
 
 def test_robot_below_world_is_fixed_and_reduced():
     spec = load(
-        link('world', 0) + link('base') + link('arm')
-        + joint('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>') + joint('j', 'base', 'arm')
+        link('world', 0)
+        + link('base')
+        + link('arm')
+        + joint('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>')
+        + joint('j', 'base', 'arm')
     )
     assert names(spec.links) == ['base']
     assert spec.links[0].pose.position == (0.0, 0.0, 2.0)
@@ -180,21 +204,29 @@ def test_content_of_the_world_link_is_reported_as_not_simulated(caplog):
 
 def test_movable_link_without_mass_is_left_out_with_its_descendants(caplog):
     spec = load(
-        link('base') + link('hub', 0) + link('tyre') + link('cap')
-        + joint('a', 'base', 'hub', 'continuous') + joint('b', 'hub', 'tyre', 'continuous')
+        link('base')
+        + link('hub', 0)
+        + link('tyre')
+        + link('cap')
+        + joint('a', 'base', 'hub', 'continuous')
+        + joint('b', 'hub', 'tyre', 'continuous')
         + joint('c', 'tyre', 'cap')
     )
     assert names(spec.links) == ['base']
     assert spec.joints == ()
     assert len(caplog.messages) == 1
-    assert re.search(r"'hub': no mass .* not simulated, as in Gazebo: 'hub', 'tyre', 'cap'",
-                     caplog.text)
+    assert re.search(
+        r"'hub': no mass .* not simulated, as in Gazebo: 'hub', 'tyre', 'cap'", caplog.text
+    )
 
 
 def test_fixed_link_without_mass_is_kept_without_its_movable_children(caplog):
     spec = load(
-        link('base') + link('mount', 0, f'<collision>{BALL}</collision>') + link('wheel')
-        + joint('a', 'base', 'mount') + joint('b', 'mount', 'wheel', 'continuous')
+        link('base')
+        + link('mount', 0, f'<collision>{BALL}</collision>')
+        + link('wheel')
+        + joint('a', 'base', 'mount')
+        + joint('b', 'mount', 'wheel', 'continuous')
     )
     assert names(spec.links) == ['base']
     assert names(spec.links[0].collisions) == ['base_fixed_joint_lump__mount_collision']
@@ -204,8 +236,11 @@ def test_fixed_link_without_mass_is_kept_without_its_movable_children(caplog):
 
 def test_root_without_mass_is_kept_if_a_fixed_child_has_mass(caplog):
     spec = load(
-        link('footprint', 0) + link('base') + link('wheel')
-        + joint('a', 'footprint', 'base') + joint('b', 'base', 'wheel', 'continuous')
+        link('footprint', 0)
+        + link('base')
+        + link('wheel')
+        + joint('a', 'footprint', 'base')
+        + joint('b', 'base', 'wheel', 'continuous')
     )
     assert names(spec.links) == ['footprint', 'wheel']
     assert caplog.text == ''

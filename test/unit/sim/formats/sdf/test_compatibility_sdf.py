@@ -17,7 +17,7 @@ OFFERED = ('same', 'better')
 MISSING, QUIET = 'not supported', 'level debug'
 
 # Contains every supported element, and the parent of every unsupported one.
-WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame name="f">
+WORLD = """<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame name="f">
 <pose>0 0 0 0 0 0</pose></frame><physics><max_step_size>0.001</max_step_size>
   <real_time_update_rate>0</real_time_update_rate>
   <update_rate>0</update_rate><gravity>0 0 -9</gravity><max_contacts>5</max_contacts><ode>
@@ -73,7 +73,7 @@ WORLD = '''<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
     </axis></joint>
 </model>
 <model name="s"><static>1</static><include><uri>model://ground_plane</uri></include></model>
-</world></sdf>'''
+</world></sdf>"""
 
 COLOUR = '1 0 0 1'
 VALUES = {'ambient': COLOUR, 'background': COLOUR, 'fdir1': '1 0 0'}  # the value of others is 3
@@ -190,8 +190,11 @@ def test_supported_elements_are_not_reported(caplog):
 @pytest.mark.parametrize('name', ABSENT)
 def test_unsupported_element_is_reported_at_the_level_of_its_row(name, caplog):
     tag = name.rpartition('/')[2]
-    named = [level for level, text in load(world_with(name), caplog)
-             if re.search(rf'/{tag} \(line|<{tag}>', text)]
+    named = [
+        level
+        for level, text in load(world_with(name), caplog)
+        if re.search(rf'/{tag} \(line|<{tag}>', text)
+    ]
     assert named == [logging.DEBUG if QUIET in ABSENT[name] else logging.WARNING]
 
 
@@ -202,5 +205,6 @@ def test_every_type_of_joint_has_a_row():
 @pytest.mark.parametrize('kind', TYPES)
 def test_type_of_joint_is_simulated_or_reported_as_in_its_row(kind, caplog):
     message = load(WORLD.replace('"revolute"', f'"{kind}"'), caplog)
-    assert [f'{kind} joints are not simulated' in text for _, text in message] \
-        == [True] * (TYPES[kind] == MISSING)
+    assert [f'{kind} joints are not simulated' in text for _, text in message] == [True] * (
+        TYPES[kind] == MISSING
+    )

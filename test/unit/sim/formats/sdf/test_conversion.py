@@ -103,8 +103,12 @@ def world(text):
 
 def content(element):
     """Return an element without the order of its children, which has no meaning."""
-    return (element.tag, element.text, dict(element.attributes),
-            sorted((content(child) for child in element.children), key=repr))
+    return (
+        element.tag,
+        element.text,
+        dict(element.attributes),
+        sorted((content(child) for child in element.children), key=repr),
+    )
 
 
 def test_values_in_attributes_are_those_in_elements():
@@ -115,8 +119,16 @@ def test_values_in_attributes_are_those_in_elements():
     (other, other_pose), _ = new.models
     assert pose == other_pose == Pose((0.0, 0.0, 2.1), from_rpy(0.5, 0.0, 0.0))
     (link,), (other_link,) = arm.links, other.links
-    for field in ('pose', 'inertial', 'collisions', 'visuals', 'gravity', 'self_collide',
-                  'linear_damping', 'angular_damping'):
+    for field in (
+        'pose',
+        'inertial',
+        'collisions',
+        'visuals',
+        'gravity',
+        'self_collide',
+        'linear_damping',
+        'angular_damping',
+    ):
         assert getattr(link, field) == getattr(other_link, field), field
     assert arm.joints == other.joints
     for sensor, like in zip(link.sensors, other_link.sensors, strict=True):
@@ -134,11 +146,15 @@ def test_the_content_of_plugins_is_left_as_it_is():
 
 def test_the_file_of_an_old_mesh_is_found(tmp_path):
     (tmp_path / 'seat.obj').write_text('v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3', encoding='ascii')
-    for mesh in (f'<mesh filename="{tmp_path}/seat.obj" scale="2 2 2"/>',
-                 f'<mesh><filename>{tmp_path}/seat.obj</filename><scale>2 2 2</scale></mesh>'):
-        spec = world('<gazebo version="1.2"><world name="w"><model name="m"><link name="l">'
-                     f'<visual name="v"><geometry>{mesh}</geometry></visual></link></model>'
-                     '</world></gazebo>')
+    for mesh in (
+        f'<mesh filename="{tmp_path}/seat.obj" scale="2 2 2"/>',
+        f'<mesh><filename>{tmp_path}/seat.obj</filename><scale>2 2 2</scale></mesh>',
+    ):
+        spec = world(
+            '<gazebo version="1.2"><world name="w"><model name="m"><link name="l">'
+            f'<visual name="v"><geometry>{mesh}</geometry></visual></link></model>'
+            '</world></gazebo>'
+        )
         ((model, _),) = spec.models
         geometry = model.links[0].visuals[0].geometry
         assert (geometry.path, geometry.scale) == (f'{tmp_path}/seat.obj', (2.0, 2.0, 2.0))

@@ -27,7 +27,8 @@ def positions(spec):
 
 def test_links_are_posed_in_their_model():
     assert positions(load(link('a', '1 0 0 0 0 0') + link('b', '0 2 0 0 0 0'))) == {
-        'a': (1.0, 0.0, 0.0), 'b': (0.0, 2.0, 0.0)
+        'a': (1.0, 0.0, 0.0),
+        'b': (0.0, 2.0, 0.0),
     }
 
 
@@ -46,45 +47,60 @@ def test_an_empty_frame_is_the_default_one():
 
 
 def test_poses_may_be_relative_to_named_frames():
-    spec = load('<frame name="f" attached_to="b"><pose>0 0 5 0 0 0</pose></frame>'
-                + link('b', '1 0 0 0 0 0') + link('a', '0 1 0 0 0 0', 'relative_to="f"'))
+    spec = load(
+        '<frame name="f" attached_to="b"><pose>0 0 5 0 0 0</pose></frame>'
+        + link('b', '1 0 0 0 0 0')
+        + link('a', '0 1 0 0 0 0', 'relative_to="f"')
+    )
     assert positions(spec)['a'] == (1.0, 1.0, 5.0)
 
 
 def test_collision_posed_in_another_frame_is_transformed_into_its_link():
     shape = '<geometry><sphere><radius>1</radius></sphere></geometry>'
-    spec = load(f'''<link name="a"><pose>1 0 0 0 0 {QUARTER}</pose>
+    spec = load(f"""<link name="a"><pose>1 0 0 0 0 {QUARTER}</pose>
       <collision name="c"><pose relative_to="__model__">0 0 0 0 0 0</pose>{shape}</collision>
-      <visual name="v"><pose>0 0 1 0 0 0</pose>{shape}</visual></link>''')
+      <visual name="v"><pose>0 0 1 0 0 0</pose>{shape}</visual></link>""")
     made = spec.links[0]
     assert made.collisions[0].pose.position == pytest.approx((0.0, 1.0, 0.0))
     assert made.visuals[0].pose == Pose((0.0, 0.0, 1.0))
 
 
 def test_sensor_posed_in_another_frame_is_transformed_into_its_link():
-    sensor = load('''<link name="a"><pose>1 0 0 0 0 0</pose><sensor name="s" type="ray">
+    sensor = (
+        load("""<link name="a"><pose>1 0 0 0 0 0</pose><sensor name="s" type="ray">
       <pose relative_to="__model__">1 0 2 0 0 0</pose><always_on>1</always_on></sensor></link>
-      ''').links[0].sensors[0]
+      """)
+        .links[0]
+        .sensors[0]
+    )
     assert sensor.pose == Pose((0.0, 0.0, 2.0))
     assert sensor.always_on
 
 
 def test_poses_may_be_relative_to_a_joint():
-    spec = load('''<joint name="j" type="fixed"><parent>a</parent><child>b</child>
-      <pose>0 0 1 0 0 0</pose></joint>''' + link('a', '0 0 0 0 0 0') + link('b', '1 0 0 0 0 0')
-                + link('c', '0 1 0 0 0 0', 'relative_to="j"'))
+    spec = load(
+        """<joint name="j" type="fixed"><parent>a</parent><child>b</child>
+      <pose>0 0 1 0 0 0</pose></joint>"""
+        + link('a', '0 0 0 0 0 0')
+        + link('b', '1 0 0 0 0 0')
+        + link('c', '0 1 0 0 0 0', 'relative_to="j"')
+    )
     assert positions(spec)['c'] == (1.0, 1.0, 1.0)
 
 
 def test_cyclic_frames_are_rejected():
     with pytest.raises(ModelError, match='posed relative to itself'):
-        load(link('a', '0 0 0 0 0 0', 'relative_to="b"')
-             + link('b', '0 0 0 0 0 0', 'relative_to="a"'))
+        load(
+            link('a', '0 0 0 0 0 0', 'relative_to="b"')
+            + link('b', '0 0 0 0 0 0', 'relative_to="a"')
+        )
 
 
 def test_long_chain_of_frames_is_resolved():
-    chain = ''.join(f'<frame name="f{i}"><pose relative_to="f{i + 1}">1 0 0 0 0 0</pose></frame>'
-                    for i in range(3000))
+    chain = ''.join(
+        f'<frame name="f{i}"><pose relative_to="f{i + 1}">1 0 0 0 0 0</pose></frame>'
+        for i in range(3000)
+    )
     spec = load(chain + '<frame name="f3000"/>' + link('a', '0 0 0 0 0 0', 'relative_to="f0"'))
     assert positions(spec)['a'] == (3000.0, 0.0, 0.0)
 
@@ -94,7 +110,7 @@ def test_error_about_an_unknown_frame_suggests_a_similar_one():
         load(link('base', '0 0 0 0 0 0') + link('a', '0 0 0 0 0 0', 'relative_to="bse"'))
 
 
-NESTED = f'''<link name="base"/>
+NESTED = f"""<link name="base"/>
   <model name="arm"><pose>0 0 1 0 0 {QUARTER}</pose>
     <link name="upper"><pose>1 0 0 0 0 0</pose>
       <sensor name="s" type="ray"><frame>upper</frame></sensor></link>
@@ -104,13 +120,15 @@ NESTED = f'''<link name="base"/>
     <plugin name="p" filename="lib.so"><jointName>elbow</jointName><topic>other</topic></plugin>
   </model>
   <joint name="shoulder" type="fixed"><parent>base</parent><child>arm::upper</child></joint>
-'''
+"""
 
 
 def test_nested_models_become_one_with_scoped_names():
     spec = load(NESTED)
     assert positions(spec) == {
-        'base': (0.0, 0.0, 0.0), 'arm::upper': (0.0, 1.0, 1.0), 'arm::lower': (0.0, 2.0, 1.0)
+        'base': (0.0, 0.0, 0.0),
+        'arm::upper': (0.0, 1.0, 1.0),
+        'arm::lower': (0.0, 2.0, 1.0),
     }
     joints = {joint.name: joint for joint in spec.joints}
     assert (joints['arm::elbow'].parent, joints['arm::elbow'].child) == ('arm::upper', 'arm::lower')

@@ -9,8 +9,10 @@ from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch, find_world, path_directories
 
-CONE = ('<sdf version="1.6"><model name="cone"><pose>0 0 7 0 0 0</pose>'
-        '<link name="body"/></model></sdf>')
+CONE = (
+    '<sdf version="1.6"><model name="cone"><pose>0 0 7 0 0 0</pose>'
+    '<link name="body"/></model></sdf>'
+)
 
 
 def put(directory, name, files, offers=(('1.6', 'model.sdf'),)):
@@ -31,8 +33,10 @@ def spawn(include, directory, name='thing'):
 
 def inside(include, directory):
     """Return a model that includes another."""
-    text = (f'<sdf version="1.7"><model name="m"><link name="base"/><include>{include}</include>'
-            '</model></sdf>')
+    text = (
+        f'<sdf version="1.7"><model name="m"><link name="base"/><include>{include}</include>'
+        '</model></sdf>'
+    )
     return load_sdf(text, 'm', source='m.sdf', find_model=ModelSearch([directory]))[0]
 
 
@@ -57,8 +61,9 @@ def test_pose_of_a_spawned_include_is_that_of_the_include_only(tmp_path):
 
 def test_an_include_overrides_static_and_adds_plugins(tmp_path):
     put(tmp_path, 'cone', {'model.sdf': CONE})
-    spec, _ = spawn('<uri>model://cone</uri><static>true</static>'
-                    '<plugin name="p" filename="lib.so"/>', tmp_path)
+    spec, _ = spawn(
+        '<uri>model://cone</uri><static>true</static><plugin name="p" filename="lib.so"/>', tmp_path
+    )
     assert spec.static
     assert [plugin.filename for plugin in spec.plugins] == ['lib.so']
 
@@ -83,8 +88,7 @@ def test_model_included_without_pose_keeps_its_own(tmp_path):
 
 def test_newest_readable_version_of_a_model_is_used(tmp_path):
     files = {f'{name}.sdf': CONE.replace('body', name) for name in ('old', 'good', 'future')}
-    put(tmp_path, 'cone', files,
-        (('1.4', 'old.sdf'), ('1.6', 'good.sdf'), ('1.10', 'future.sdf')))
+    put(tmp_path, 'cone', files, (('1.4', 'old.sdf'), ('1.6', 'good.sdf'), ('1.10', 'future.sdf')))
     assert spawn('<uri>model://cone</uri>', tmp_path)[0].links[0].name == 'good'
 
 
@@ -117,10 +121,18 @@ def test_any_number_of_slashes_may_follow_the_scheme(tmp_path, uri):
 
 
 def test_meshes_are_found_relative_to_the_including_file(tmp_path):
-    part = ('<link name="body"><visual name="v"><geometry><mesh><uri>part.obj</uri></mesh>'
-            '</geometry></visual></link>')
-    put(tmp_path, 'cone', {'model.sdf': CONE.replace('<link name="body"/>', part),
-                           'part.obj': 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'})
+    part = (
+        '<link name="body"><visual name="v"><geometry><mesh><uri>part.obj</uri></mesh>'
+        '</geometry></visual></link>'
+    )
+    put(
+        tmp_path,
+        'cone',
+        {
+            'model.sdf': CONE.replace('<link name="body"/>', part),
+            'part.obj': 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n',
+        },
+    )
     spec, _ = spawn('<uri>model://cone</uri>', tmp_path)
     assert spec.links[0].visuals[0].geometry.path == str(tmp_path / 'cone' / 'part.obj')
 
@@ -133,9 +145,11 @@ def test_builtin_ground_plane_is_used_unless_the_path_has_one(tmp_path):
 
 def test_omissions_of_an_included_file_are_reported_once_with_its_name(tmp_path, caplog):
     put(tmp_path, 'cone', {'model.sdf': CONE.replace('<link', '<battery>x</battery><link')})
-    text = ('<sdf version="1.7"><model name="m"><link name="base"/>'
-            '<include><uri>model://cone</uri><name>one</name></include>'
-            '<include><uri>model://cone</uri><name>two</name></include></model></sdf>')
+    text = (
+        '<sdf version="1.7"><model name="m"><link name="base"/>'
+        '<include><uri>model://cone</uri><name>one</name></include>'
+        '<include><uri>model://cone</uri><name>two</name></include></model></sdf>'
+    )
     with caplog.at_level(logging.WARNING):
         load_sdf(text, 'm', source='m.sdf', find_model=ModelSearch([tmp_path]))
     assert [record.getMessage() for record in caplog.records] == [
@@ -145,22 +159,32 @@ def test_omissions_of_an_included_file_are_reported_once_with_its_name(tmp_path,
 
 def test_circular_includes_are_rejected(tmp_path):
     for name, other in (('one', 'two'), ('two', 'one')):
-        put(tmp_path, name, {'model.sdf': CONE.replace(
-            '<link', f'<include><uri>model://{other}</uri></include><link')})
+        put(
+            tmp_path,
+            name,
+            {
+                'model.sdf': CONE.replace(
+                    '<link', f'<include><uri>model://{other}</uri></include><link'
+                )
+            },
+        )
     assert 'includes itself' in error_message('<uri>model://one</uri>', tmp_path)
 
 
-@pytest.mark.parametrize('include, part', [
-    ('', 'an <include> without <uri>'),
-    ('<uri>model://nowhere</uri>', "'model://nowhere' is not to be found along the model path"),
-    ('<uri>model://../etc</uri>', "'..' is not accepted"),
-    ('<uri>https://fuel.gazebosim.org/1.0/turtle</uri>', 'not fetched from the network'),
-    ('<uri>file:///nowhere/at/all</uri>', "'/nowhere/at/all' does not exist"),
-    ('<uri>model://sun</uri>', 'contains no <model>'),
-    ('<uri>model://bare</uri>', 'neither model.config nor model.sdf'),
-    ('<uri>model://dumb</uri>', 'names no description'),
-    ('<uri>model://gone</uri>', 'cannot be read'),
-])
+@pytest.mark.parametrize(
+    'include, part',
+    [
+        ('', 'an <include> without <uri>'),
+        ('<uri>model://nowhere</uri>', "'model://nowhere' is not to be found along the model path"),
+        ('<uri>model://../etc</uri>', "'..' is not accepted"),
+        ('<uri>https://fuel.gazebosim.org/1.0/turtle</uri>', 'not fetched from the network'),
+        ('<uri>file:///nowhere/at/all</uri>', "'/nowhere/at/all' does not exist"),
+        ('<uri>model://sun</uri>', 'contains no <model>'),
+        ('<uri>model://bare</uri>', 'neither model.config nor model.sdf'),
+        ('<uri>model://dumb</uri>', 'names no description'),
+        ('<uri>model://gone</uri>', 'cannot be read'),
+    ],
+)
 def test_unresolved_include_is_rejected(tmp_path, include, part):
     (tmp_path / 'bare').mkdir()
     put(tmp_path, 'dumb', {}, (('1.6', '../../secret.sdf'),))

@@ -11,8 +11,8 @@ from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch
 
 # b is at x = 1 m, rotated by 90 degrees about z: its x axis is the model's y axis.
-LINKS = f'''<link name="a"/><link name="b"><pose>1 0 0 0 0 {math.pi / 2}</pose></link>
-  <link name="c"><pose>2 0 0 0 0 0</pose></link><link name="d"><pose>3 0 0 0 0 0</pose></link>'''
+LINKS = f"""<link name="a"/><link name="b"><pose>1 0 0 0 0 {math.pi / 2}</pose></link>
+  <link name="c"><pose>2 0 0 0 0 0</pose></link><link name="d"><pose>3 0 0 0 0 0</pose></link>"""
 
 
 def load(joints, version='1.6', links=LINKS):
@@ -21,8 +21,10 @@ def load(joints, version='1.6', links=LINKS):
 
 
 def joint(parent='a', child='b', kind='revolute', inside='<axis><xyz>1 0 0</xyz></axis>', name=''):
-    return (f'<joint name="{name or parent + child}" type="{kind}"><parent>{parent}</parent>'
-            f'<child>{child}</child>{inside}</joint>')
+    return (
+        f'<joint name="{name or parent + child}" type="{kind}"><parent>{parent}</parent>'
+        f'<child>{child}</child>{inside}</joint>'
+    )
 
 
 def only(*arguments, version='1.6', **options):
@@ -42,8 +44,9 @@ def test_a_fixed_joint_stays_a_joint():
 
 
 def test_a_continuous_joint_is_a_revolute_one_without_limits():
-    made = only(kind='continuous',
-                inside='<axis><limit><lower>0</lower><upper>1</upper></limit></axis>')
+    made = only(
+        kind='continuous', inside='<axis><limit><lower>0</lower><upper>1</upper></limit></axis>'
+    )
     assert (made.type, made.lower, made.upper) == (REVOLUTE, None, None)
 
 
@@ -81,19 +84,25 @@ def test_the_joints_pose_may_be_given_in_the_parents_frame():
 
 
 def test_limits_and_dynamics_are_read():
-    made = only(kind='prismatic', inside='''<axis><xyz>0 0 1</xyz><limit><lower>-1</lower>
+    made = only(
+        kind='prismatic',
+        inside="""<axis><xyz>0 0 1</xyz><limit><lower>-1</lower>
       <upper>2</upper><effort>10</effort><velocity>3</velocity></limit>
-      <dynamics><damping>0.5</damping><friction>0.1</friction></dynamics></axis>''')
+      <dynamics><damping>0.5</damping><friction>0.1</friction></dynamics></axis>""",
+    )
     assert made.type == PRISMATIC
     assert (made.lower, made.upper, made.effort, made.velocity) == (-1.0, 2.0, 10.0, 3.0)
     assert (made.damping, made.friction) == (0.5, 0.1)
 
 
-@pytest.mark.parametrize('lower, upper', [('-1e16', '1e16'), ('-inf', 'inf'),
-                                          ('-1.79769e+308', '1.79769e+308')])
+@pytest.mark.parametrize(
+    'lower, upper', [('-1e16', '1e16'), ('-inf', 'inf'), ('-1.79769e+308', '1.79769e+308')]
+)
 def test_infinite_limits_are_none(lower, upper):
-    made = only(inside=f'''<axis><xyz>0 0 1</xyz><limit><lower>{lower}</lower>
-      <upper>{upper}</upper><effort>-1</effort><velocity>-1</velocity></limit></axis>''')
+    made = only(
+        inside=f"""<axis><xyz>0 0 1</xyz><limit><lower>{lower}</lower>
+      <upper>{upper}</upper><effort>-1</effort><velocity>-1</velocity></limit></axis>"""
+    )
     assert (made.lower, made.upper, made.effort, made.velocity) == (None, None, None, None)
 
 
@@ -137,8 +146,15 @@ def test_second_joint_to_the_world_closes_a_loop(caplog):
 
 
 def test_one_joint_of_a_link_with_two_parents_is_reversed():
-    spec = load(joint('a', 'b') + joint('c', 'b', inside='''<pose>0 0 1 0 0 0</pose>
-      <axis><xyz>1 0 0</xyz></axis>'''))
+    spec = load(
+        joint('a', 'b')
+        + joint(
+            'c',
+            'b',
+            inside="""<pose>0 0 1 0 0 0</pose>
+      <axis><xyz>1 0 0</xyz></axis>""",
+        )
+    )
     turned = spec.joints[1]
     assert [(made.parent, made.child) for made in spec.joints] == [('a', 'b'), ('b', 'c')]
     # The joint stays where it was, and its position keeps its sign.
@@ -152,23 +168,31 @@ def test_tree_connected_to_the_world_is_rooted_there():
     assert {(made.parent, made.child) for made in spec.joints} == {('world', 'b'), ('b', 'a')}
 
 
-@pytest.mark.parametrize('text, part', [
-    (joint(kind='hinge'), "type 'hinge' is unknown"),
-    (joint('', 'b', name='j'), 'it has no <parent>'),
-    (joint('a', 'a'), "connects 'a' to itself"),
-    (joint('a', 'world'), 'the world cannot be the child'),
-    (joint() + joint(), "there are two joints 'ab'"),
-    (joint(inside='<axis><dynamics><damping>-1</damping></dynamics></axis>'),
-     '<damping> is -1; it must not be negative'),
-])
+@pytest.mark.parametrize(
+    'text, part',
+    [
+        (joint(kind='hinge'), "type 'hinge' is unknown"),
+        (joint('', 'b', name='j'), 'it has no <parent>'),
+        (joint('a', 'a'), "connects 'a' to itself"),
+        (joint('a', 'world'), 'the world cannot be the child'),
+        (joint() + joint(), "there are two joints 'ab'"),
+        (
+            joint(inside='<axis><dynamics><damping>-1</damping></dynamics></axis>'),
+            '<damping> is -1; it must not be negative',
+        ),
+    ],
+)
 def test_invalid_joint_is_rejected(text, part):
     assert part in error_message(text)
 
 
 def test_springs_are_read_and_negative_stiffness_is_rejected():
-    inside = ('<axis><xyz>1 0 0</xyz><dynamics><spring_stiffness>{}</spring_stiffness>'
-              '<spring_reference>-0.5</spring_reference></dynamics></axis>')
+    inside = (
+        '<axis><xyz>1 0 0</xyz><dynamics><spring_stiffness>{}</spring_stiffness>'
+        '<spring_reference>-0.5</spring_reference></dynamics></axis>'
+    )
     made = only(inside=inside.format(7.5))
     assert (made.stiffness, made.reference) == (7.5, -0.5)
     assert '<spring_stiffness> is -1; it must not be negative' in error_message(
-        joint(inside=inside.format(-1)))
+        joint(inside=inside.format(-1))
+    )

@@ -61,8 +61,9 @@ def warnings_of(caplog, body, **options):
 
 
 def test_model_gets_the_spawn_name_and_keeps_its_own_pose():
-    text = ('<sdf version="1.6"><model name="x"><pose>1 2 3 0 0 0</pose><link name="a"/></model>'
-            '</sdf>')
+    text = (
+        '<sdf version="1.6"><model name="x"><pose>1 2 3 0 0 0</pose><link name="a"/></model></sdf>'
+    )
     spec, pose = load_sdf(text, 'bot', find_model=ModelSearch())
     assert spec.name == 'bot'
     assert pose == Pose((1.0, 2.0, 3.0))
@@ -80,8 +81,10 @@ def test_malformed_pose_of_the_model_is_ignored(caplog):
 
 
 def test_the_built_in_ground_plane_is_the_one_of_the_empty_world():
-    text = '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri></include>' \
+    text = (
+        '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri></include>'
         '</world></sdf>'
+    )
     spec, _ = load_sdf(text, 'ground_plane', find_model=ModelSearch())
     assert spec == GROUND_PLANE
 
@@ -93,17 +96,24 @@ def test_default_mass_and_moments_are_one():
 
 
 def test_an_inertial_is_read_with_its_own_pose():
-    inertial = load(link(
-        '<inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
-        '<izz>0.25</izz><ixy>0.01</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>'
-    )).links[0].inertial
+    inertial = (
+        load(
+            link(
+                '<inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
+                '<izz>0.25</izz><ixy>0.01</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>'
+            )
+        )
+        .links[0]
+        .inertial
+    )
     assert (inertial.mass, inertial.pose) == (2.0, Pose((0.0, 0.0, 0.5)))
     assert (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy) == (0.1, 0.2, 0.25, 0.01)
 
 
 def test_zero_inertia_becomes_that_of_a_ball(caplog):
-    body = link('<inertial><mass>1</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia>'
-                '</inertial>')
+    body = link(
+        '<inertial><mass>1</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial>'
+    )
     assert load(body).links[0].inertial.ixx > 0.0
     assert "link 'a': an inertia of zero" in caplog.text
 
@@ -114,18 +124,23 @@ def test_static_model_may_have_any_mass():
     assert spec.links[0].inertial is None
 
 
-@pytest.mark.parametrize('shape, expected', [
-    ('<box><size>1 2 3</size></box>', Box((1.0, 2.0, 3.0))),
-    ('<sphere><radius>0.5</radius></sphere>', Sphere(0.5)),
-    ('<cylinder><radius>0.5</radius><length>2</length></cylinder>', Cylinder(0.5, 2.0)),
-])
+@pytest.mark.parametrize(
+    'shape, expected',
+    [
+        ('<box><size>1 2 3</size></box>', Box((1.0, 2.0, 3.0))),
+        ('<sphere><radius>0.5</radius></sphere>', Sphere(0.5)),
+        ('<cylinder><radius>0.5</radius><length>2</length></cylinder>', Cylinder(0.5, 2.0)),
+    ],
+)
 def test_a_shape_has_its_size(shape, expected):
     assert collision(f'<geometry>{shape}</geometry>').geometry == expected
 
 
 def test_a_plane_has_a_unit_normal():
-    body = link('<collision name="c"><geometry><plane><normal>0 0 2</normal><size>3 4</size>'
-                '</plane></geometry></collision>')
+    body = link(
+        '<collision name="c"><geometry><plane><normal>0 0 2</normal><size>3 4</size>'
+        '</plane></geometry></collision>'
+    )
     plane = load('<static>1</static>' + body).links[0].collisions[0].geometry
     assert plane == Plane((0.0, 0.0, 1.0), (3.0, 4.0))
 
@@ -139,8 +154,10 @@ def test_plane_in_a_movable_model_is_left_out_and_reported(caplog):
 def test_mesh_is_found_on_the_model_path_and_scaled(tmp_path):
     (tmp_path / 'chair' / 'meshes').mkdir(parents=True)
     (tmp_path / 'chair' / 'meshes' / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
-    text = f'''<sdf version="1.6"><model name="m">{link("""<visual name="v"><geometry><mesh>
-      <uri>model://chair/meshes/seat.obj</uri><scale>2 2 1</scale></mesh></geometry></visual>""")}
+    text = f'''<sdf version="1.6"><model name="m">{
+        link("""<visual name="v"><geometry><mesh>
+      <uri>model://chair/meshes/seat.obj</uri><scale>2 2 1</scale></mesh></geometry></visual>""")
+    }
       </model></sdf>'''
     spec, _ = load_sdf(text, 'm', find_model=ModelSearch([tmp_path]))
     mesh = spec.links[0].visuals[0].geometry
@@ -156,16 +173,26 @@ def test_a_mesh_without_address_is_left_out_and_the_model_stays(caplog):
 
 
 def test_negative_limits_of_contacts_that_gazebo_writes_are_accepted():
-    surface = load(link(
-        f'<collision name="c">{BOX}<surface><contact><ode><max_vel>-1</max_vel><min_depth>-1'
-        '</min_depth></ode></contact></surface></collision>')).links[0].collisions[0].surface
+    surface = (
+        load(
+            link(
+                f'<collision name="c">{BOX}<surface><contact><ode><max_vel>-1</max_vel><min_depth>-1'
+                '</min_depth></ode></contact></surface></collision>'
+            )
+        )
+        .links[0]
+        .collisions[0]
+        .surface
+    )
     assert (surface.max_vel, surface.min_depth) == (0.0, 0.0)
 
 
 def test_a_mesh_of_a_package_is_found(tmp_path):
     (tmp_path / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
-    body = link('<visual name="v"><geometry><mesh><uri>package://furniture/seat.obj</uri></mesh>'
-                '</geometry></visual>')
+    body = link(
+        '<visual name="v"><geometry><mesh><uri>package://furniture/seat.obj</uri></mesh>'
+        '</geometry></visual>'
+    )
     spec = load(body, find_package={'furniture': str(tmp_path)}.get)
     assert spec.links[0].visuals[0].geometry.path == str(tmp_path / 'seat.obj')
 
@@ -175,9 +202,13 @@ def load_submesh(tmp_path, name, center):
     file = tmp_path / 'two.dae'
     if not file.exists():
         file.write_text(two_triangles(), encoding='utf-8')
-    spec = load(link(f'<collision name="c"><geometry><mesh><uri>file://{file}</uri>'
-                     f'<submesh><name>{name}</name><center>{center}</center></submesh></mesh>'
-                     '</geometry></collision>'))
+    spec = load(
+        link(
+            f'<collision name="c"><geometry><mesh><uri>file://{file}</uri>'
+            f'<submesh><name>{name}</name><center>{center}</center></submesh></mesh>'
+            '</geometry></collision>'
+        )
+    )
     return spec.links[0]
 
 
@@ -189,9 +220,9 @@ def submesh(tmp_path, name, center):
 
 
 def two_triangles():
-    node = '''<node name="{}"><translate>{} 0 0</translate>
-      <instance_geometry url="#shape"/></node>'''
-    return f'''<?xml version="1.0"?>
+    node = """<node name="{}"><translate>{} 0 0</translate>
+      <instance_geometry url="#shape"/></node>"""
+    return f"""<?xml version="1.0"?>
       <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
       <asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset>
       <library_geometries><geometry id="shape"><mesh><source id="p">
@@ -202,7 +233,7 @@ def two_triangles():
       <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
       </mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s">
       {node.format('left', 1000)}{node.format('right', -1000)}</visual_scene>
-      </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>'''
+      </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
 
 
 def test_submesh_is_only_one_part_of_its_file(tmp_path):
@@ -240,20 +271,22 @@ def test_unknown_submesh_is_left_out_and_a_similar_one_suggested(tmp_path, caplo
 
 @pytest.mark.parametrize('uri', ['model://../secret.dae', 'model://a/../../secret.dae'])
 def test_path_out_of_the_model_path_is_rejected(uri):
-    sentence = error_message(link(
-        f'<collision name="c"><geometry><mesh><uri>{uri}</uri></mesh></geometry></collision>'
-    ))
+    sentence = error_message(
+        link(f'<collision name="c"><geometry><mesh><uri>{uri}</uri></mesh></geometry></collision>')
+    )
     assert "'..' is not accepted" in sentence
 
 
 def test_heightmap_is_reported_with_path_and_line(caplog):
-    message = warnings_of(caplog, '\n' + link(
-        '<collision name="c"><geometry><heightmap><uri>x.png</uri></heightmap></geometry>'
-        '</collision>'
-    ))
-    assert message == [
-        'bot.sdf: not simulated: model/link/collision/geometry/heightmap (line 2)'
-    ]
+    message = warnings_of(
+        caplog,
+        '\n'
+        + link(
+            '<collision name="c"><geometry><heightmap><uri>x.png</uri></heightmap></geometry>'
+            '</collision>'
+        ),
+    )
+    assert message == ['bot.sdf: not simulated: model/link/collision/geometry/heightmap (line 2)']
 
 
 def test_a_surface_has_sdfs_defaults():
@@ -261,10 +294,13 @@ def test_a_surface_has_sdfs_defaults():
 
 
 def test_a_surface_is_read():
-    surface = collision(BOX + '''<max_contacts>5</max_contacts><laser_retro>7</laser_retro>
+    surface = collision(
+        BOX
+        + """<max_contacts>5</max_contacts><laser_retro>7</laser_retro>
       <surface><friction><ode><mu>0.3</mu><mu2>0.2</mu2><fdir1>1 0 0</fdir1></ode></friction>
       <contact><ode><kp>1e6</kp><kd>10</kd><max_vel>0.1</max_vel><min_depth>0.001</min_depth>
-      </ode></contact></surface>''').surface
+      </ode></contact></surface>"""
+    ).surface
     assert surface == Surface(0.3, 0.2, (1.0, 0.0, 0.0), 1e6, 10.0, 0.1, 0.001, 5, 7.0)
 
 
@@ -280,8 +316,10 @@ def test_a_script_of_gazebo_gives_its_colour():
 
 
 def test_diffuse_colour_takes_precedence_over_the_script():
-    inside = ('<material><script><name>Gazebo/Red</name></script><ambient>0 1 0 1</ambient>'
-              '<diffuse>0 0 1</diffuse></material>')
+    inside = (
+        '<material><script><name>Gazebo/Red</name></script><ambient>0 1 0 1</ambient>'
+        '<diffuse>0 0 1</diffuse></material>'
+    )
     material = visual(inside).material
     assert (material.rgba, material.script) == ((0.0, 0.0, 1.0, 1.0), 'Gazebo/Red')
     assert material.reflection.ambient == (0.0, 1.0, 0.0)
@@ -306,9 +344,12 @@ def test_invisible_visual_is_left_out():
 
 
 def test_flags_of_a_link_are_read():
-    made = load(link('<gravity>0</gravity><self_collide>1</self_collide><kinematic>true</kinematic>'
-                     '<velocity_decay><linear>0.1</linear><angular>0.2</angular></velocity_decay>'
-                     )).links[0]
+    made = load(
+        link(
+            '<gravity>0</gravity><self_collide>1</self_collide><kinematic>true</kinematic>'
+            '<velocity_decay><linear>0.1</linear><angular>0.2</angular></velocity_decay>'
+        )
+    ).links[0]
     assert (made.gravity, made.self_collide, made.kinematic) == (False, True, True)
     assert (made.linear_damping, made.angular_damping) == (0.1, 0.2)
 
@@ -326,8 +367,10 @@ def test_duplicate_names_of_shapes_become_unique():
 
 
 def test_sensors_and_plugins_are_kept_with_their_lines():
-    spec = load(link('<sensor name="s" type="ray"><update_rate>5</update_rate></sensor>')
-                + '\n<plugin name="p" filename="lib.so"><a>1</a></plugin>')
+    spec = load(
+        link('<sensor name="s" type="ray"><update_rate>5</update_rate></sensor>')
+        + '\n<plugin name="p" filename="lib.so"><a>1</a></plugin>'
+    )
     sensor, plugin = spec.links[0].sensors[0], spec.plugins[0]
     assert (sensor.type, sensor.update_rate) == ('ray', 5.0)
     assert (plugin.name, plugin.filename, plugin.element.child('a').text) == ('p', 'lib.so', '1')
@@ -335,14 +378,21 @@ def test_sensors_and_plugins_are_kept_with_their_lines():
 
 
 def test_namespace_is_given_to_plugins_without_one():
-    spec = load(link() + '<plugin name="p" filename="a.so"/><plugin name="q" filename="b.so">'
-                '<robotNamespace/></plugin>', robot_namespace='/r1')
+    spec = load(
+        link() + '<plugin name="p" filename="a.so"/><plugin name="q" filename="b.so">'
+        '<robotNamespace/></plugin>',
+        robot_namespace='/r1',
+    )
     assert [p.element.child('robotNamespace').text for p in spec.plugins] == ['/r1', '']
 
 
 def test_omissions_are_reported_once_with_path_and_line(caplog):
-    body = '\n'.join([link('<audio_source>x</audio_source><battery>y</battery>'),
-                      link('<battery>z</battery>', 'b')])
+    body = '\n'.join(
+        [
+            link('<audio_source>x</audio_source><battery>y</battery>'),
+            link('<battery>z</battery>', 'b'),
+        ]
+    )
     assert warnings_of(caplog, body) == [
         'bot.sdf: not simulated: model/link/audio_source (line 1), '
         'model/link/battery (line 1 and 1 more)'
@@ -350,17 +400,22 @@ def test_omissions_are_reported_once_with_path_and_line(caplog):
 
 
 def test_elements_without_effect_are_not_reported(caplog):
-    body = link(f'<enable_wind>0</enable_wind><collision name="c">{BOX}<surface><bounce/>'
-                '<friction><torsional><ode/></torsional><ode/></friction><contact><ode/></contact>'
-                '</surface></collision>') + '<allow_auto_disable>1</allow_auto_disable>'
+    body = (
+        link(
+            f'<enable_wind>0</enable_wind><collision name="c">{BOX}<surface><bounce/>'
+            '<friction><torsional><ode/></torsional><ode/></friction><contact><ode/></contact>'
+            '</surface></collision>'
+        )
+        + '<allow_auto_disable>1</allow_auto_disable>'
+    )
     assert warnings_of(caplog, body) == []
 
 
 def test_spawned_light_has_the_requested_name():
-    text = '''<sdf version="1.6"><light type="spot" name="lamp"><pose>0 0 3 0 0 0</pose>
+    text = """<sdf version="1.6"><light type="spot" name="lamp"><pose>0 0 3 0 0 0</pose>
       <diffuse>1 0.5 0 1</diffuse><direction>0 0 -1</direction><cast_shadows>1</cast_shadows>
       <attenuation><range>20</range><constant>0.5</constant><linear>0.1</linear>
-      <quadratic>0.01</quadratic></attenuation></light></sdf>'''
+      <quadratic>0.01</quadratic></attenuation></light></sdf>"""
     light = load_sdf_light(text, 'kitchen')
     assert (light.name, light.type, light.pose.position) == ('kitchen', 'spot', (0.0, 0.0, 3.0))
     assert (light.diffuse, light.cast_shadows) == ((1.0, 0.5, 0.0, 1.0), True)
@@ -373,41 +428,64 @@ def test_model_is_not_read_as_a_light():
 
 
 def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
-    spec = load(link('<pose degrees="true">0 0 0 0 0 90</pose>')
-                + link('<pose rotation_format="quat_xyzw">0 0 0 0 0 2 2</pose>', 'b'))
+    spec = load(
+        link('<pose degrees="true">0 0 0 0 0 90</pose>')
+        + link('<pose rotation_format="quat_xyzw">0 0 0 0 0 2 2</pose>', 'b')
+    )
     quarter = math.sqrt(0.5)
     for made in spec.links:
         assert made.pose.orientation == pytest.approx((0.0, 0.0, quarter, quarter))
 
 
-@pytest.mark.parametrize('body, part', [
-    ('', 'the model has no <link>'),
-    (link(name=''), 'a <link> without name'),
-    (link(name='world'), "a link cannot be called 'world'"),
-    (link() + link(), "there are two links 'a'"),
-    (link('<inertial><mass>-1</mass></inertial>'), 'mass -1 kg is not valid'),
-    (link('<inertial><mass>heavy</mass></inertial>'), "<mass> is 'heavy'"),
-    (link('<inertial><inertia><ixx>-1</ixx></inertia></inertial>'), '<ixx> is -1'),
-    (link('<pose>0 0 nan 0 0 0</pose>'), 'it takes six finite numbers'),
-    (link('<collision name="c"/>'), "<collision name='c'> has no shape"),
-    (link('<collision name="c"><geometry><box/></geometry></collision>'), '<box> has no <size>'),
-    (link('<collision name="c"><geometry><sphere><radius>-1</radius></sphere></geometry>'
-          '</collision>'), 'a size must be greater than zero'),
-    (link('<collision name="c"><geometry><torus/></geometry></collision>'),
-     "geometry 'torus' is unknown"),
-    (link(f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact></surface>'
-          '</collision>'), '<kp> is -5; it must not be negative'),
-])
+@pytest.mark.parametrize(
+    'body, part',
+    [
+        ('', 'the model has no <link>'),
+        (link(name=''), 'a <link> without name'),
+        (link(name='world'), "a link cannot be called 'world'"),
+        (link() + link(), "there are two links 'a'"),
+        (link('<inertial><mass>-1</mass></inertial>'), 'mass -1 kg is not valid'),
+        (link('<inertial><mass>heavy</mass></inertial>'), "<mass> is 'heavy'"),
+        (link('<inertial><inertia><ixx>-1</ixx></inertia></inertial>'), '<ixx> is -1'),
+        (link('<pose>0 0 nan 0 0 0</pose>'), 'it takes six finite numbers'),
+        (link('<collision name="c"/>'), "<collision name='c'> has no shape"),
+        (
+            link('<collision name="c"><geometry><box/></geometry></collision>'),
+            '<box> has no <size>',
+        ),
+        (
+            link(
+                '<collision name="c"><geometry><sphere><radius>-1</radius></sphere></geometry>'
+                '</collision>'
+            ),
+            'a size must be greater than zero',
+        ),
+        (
+            link('<collision name="c"><geometry><torus/></geometry></collision>'),
+            "geometry 'torus' is unknown",
+        ),
+        (
+            link(
+                f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact></surface>'
+                '</collision>'
+            ),
+            '<kp> is -5; it must not be negative',
+        ),
+    ],
+)
 def test_invalid_element_is_rejected_with_location_and_reason(body, part):
     assert part in error_message(body)
 
 
-@pytest.mark.parametrize('text, part', [
-    ('<robot name="r"/>', 'the first element is <robot>'),
-    ('<sdf version="1.6"/>', 'neither a <model> nor a <world> with an <include>'),
-    ('<sdf version="new"><model name="m"/></sdf>', 'version="new" is not valid'),
-    ('<sdf version="1.6"><model name="m">', 'not well-formed XML'),
-])
+@pytest.mark.parametrize(
+    'text, part',
+    [
+        ('<robot name="r"/>', 'the first element is <robot>'),
+        ('<sdf version="1.6"/>', 'neither a <model> nor a <world> with an <include>'),
+        ('<sdf version="new"><model name="m"/></sdf>', 'version="new" is not valid'),
+        ('<sdf version="1.6"><model name="m">', 'not well-formed XML'),
+    ],
+)
 def test_text_that_is_not_sdf_is_rejected(text, part):
     with pytest.raises(ModelError, match=part):
         load_sdf(text, 'm', find_model=ModelSearch())

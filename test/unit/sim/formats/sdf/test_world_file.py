@@ -50,8 +50,10 @@ def test_models_are_in_the_order_of_the_file():
 
 
 def test_an_include_overrides_name_and_pose():
-    include = ('<include><uri>model://ground_plane</uri><name>floor</name>'
-               '<pose>0 0 -1 0 0 0</pose></include>')
+    include = (
+        '<include><uri>model://ground_plane</uri><name>floor</name>'
+        '<pose>0 0 -1 0 0 0</pose></include>'
+    )
     model, pose = load(include).models[0]
     assert (model.name, pose) == ('floor', Pose((0.0, 0.0, -1.0)))
 
@@ -63,9 +65,12 @@ def test_light_can_be_included_with_name_and_pose():
 
 
 def test_models_may_be_posed_in_frames_of_the_world():
-    world = load(f'''<frame name="corner"><pose>5 0 0 0 0 {math.pi / 2}</pose></frame>
+    world = load(
+        f"""<frame name="corner"><pose>5 0 0 0 0 {math.pi / 2}</pose></frame>
       <model name="m"><pose relative_to="corner">1 0 0 0 0 0</pose><link name="a"/></model>
-      <model name="n"><pose relative_to="m">1 0 0 0 0 0</pose><link name="a"/></model>''', '1.7')
+      <model name="n"><pose relative_to="m">1 0 0 0 0 0</pose><link name="a"/></model>""",
+        '1.7',
+    )
     assert world.models[0][1].position == pytest.approx((5.0, 1.0, 0.0))
     assert world.models[1][1].position == pytest.approx((5.0, 2.0, 0.0))
 
@@ -90,27 +95,37 @@ def test_invalid_model_is_left_out_with_an_error(caplog):
 
 def test_all_missing_models_of_a_world_are_one_error(caplog):
     included = '<include><uri>model://{}</uri></include>'
-    world = load(''.join(map(included.format, ('shelf', 'sun', 'lamp', 'shelf'))),
-                 directories=['/models'])
+    world = load(
+        ''.join(map(included.format, ('shelf', 'sun', 'lamp', 'shelf'))), directories=['/models']
+    )
     (fault,) = world.faults
     assert fault == (
         "w.world: 3 <include>s: 'shelf', 'lamp' are not to be found along the model path (/models)"
-        '; add the folder that holds them to GAZEBO_MODEL_PATH where the simulator is started')
+        '; add the folder that holds them to GAZEBO_MODEL_PATH where the simulator is started'
+    )
     errors = [record.getMessage() for record in caplog.records if record.levelno == logging.ERROR]
     assert errors == [f'{fault}; the world is loaded without them']
     assert len(world.lights) == 1
 
 
 def test_physics_is_read():
-    assert physics('''<max_step_size>0.002</max_step_size><real_time_factor>1</real_time_factor>
+    assert physics("""<max_step_size>0.002</max_step_size><real_time_factor>1</real_time_factor>
       <real_time_update_rate>0</real_time_update_rate><max_contacts>30</max_contacts>
       <gravity>0 0 -1.6</gravity><ode><solver><type>quick</type><iters>100</iters>
       <precon_iters>2</precon_iters><sor>1.1</sor></solver><constraints><cfm>0.1</cfm><erp>0.3</erp>
       <contact_max_correcting_vel>50</contact_max_correcting_vel><contact_surface_layer>0.002
-      </contact_surface_layer></constraints></ode>''') == PhysicsSettings(
-        step_size=0.002, max_update_rate=0.0, gravity=(0.0, 0.0, -1.6), sor_pgs_precon_iters=2,
-        sor_pgs_iters=100, sor_pgs_w=1.1, cfm=0.1, erp=0.3, contact_surface_layer=0.002,
-        contact_max_correcting_vel=50.0, max_contacts=30,
+      </contact_surface_layer></constraints></ode>""") == PhysicsSettings(
+        step_size=0.002,
+        max_update_rate=0.0,
+        gravity=(0.0, 0.0, -1.6),
+        sor_pgs_precon_iters=2,
+        sor_pgs_iters=100,
+        sor_pgs_w=1.1,
+        cfm=0.1,
+        erp=0.3,
+        contact_surface_layer=0.002,
+        contact_max_correcting_vel=50.0,
+        max_contacts=30,
     )
 
 
@@ -136,10 +151,14 @@ def test_other_physics_engine_is_reported(caplog):
     assert "physics type 'bullet' is not available" in caplog.text
 
 
-@pytest.mark.parametrize(('model', 'cone', 'logged'), [
-    ('pyramid_model', False, ''), ('cone_model', True, ''),
-    ('box_model', False, "friction_model 'box_model' is not supported; pyramid_model is used"),
-])
+@pytest.mark.parametrize(
+    ('model', 'cone', 'logged'),
+    [
+        ('pyramid_model', False, ''),
+        ('cone_model', True, ''),
+        ('box_model', False, "friction_model 'box_model' is not supported; pyramid_model is used"),
+    ],
+)
 def test_the_friction_model_is_read(model, cone, logged, caplog):
     tag = f'<friction_model>{model}</friction_model>'
     made = physics(f'<ode><solver>{tag}</solver></ode>')
@@ -148,14 +167,16 @@ def test_the_friction_model_is_read(model, cone, logged, caplog):
 
 
 def test_the_scene_is_kept():
-    scene = load('''<scene><ambient>0.1 0.2 0.3 1</ambient><background>0 0 1 1</background>
-      <shadows>0</shadows></scene>''').scene
+    scene = load("""<scene><ambient>0.1 0.2 0.3 1</ambient><background>0 0 1 1</background>
+      <shadows>0</shadows></scene>""").scene
     assert scene == SceneSpec((0.1, 0.2, 0.3, 1.0), (0.0, 0.0, 1.0, 1.0), False)
 
 
 def test_the_view_of_the_gui_is_kept():
-    camera = load('<gui><camera name="user_camera"><pose>5 -5 2 0 0.5 2.36</pose>'
-                  '<view_controller>orbit</view_controller></camera></gui>').scene.user_camera
+    camera = load(
+        '<gui><camera name="user_camera"><pose>5 -5 2 0 0.5 2.36</pose>'
+        '<view_controller>orbit</view_controller></camera></gui>'
+    ).scene.user_camera
     assert camera == Pose((5.0, -5.0, 2.0), from_rpy(0.0, 0.5, 2.36))
     for without in ('', '<gui/>', '<gui><camera/></gui>'):
         assert load(without).scene.user_camera is None
@@ -169,10 +190,13 @@ def test_a_view_that_is_no_pose_is_left_out():
 
 
 def test_lights_of_the_world_are_kept():
-    lights = load('<light type="point" name="a"><pose>1 2 3 0 0 0</pose></light>'
-                  '<light type="directional" name="b"/>').lights
+    lights = load(
+        '<light type="point" name="a"><pose>1 2 3 0 0 0</pose></light>'
+        '<light type="directional" name="b"/>'
+    ).lights
     assert [(light.name, light.type, light.pose.position) for light in lights] == [
-        ('a', 'point', (1.0, 2.0, 3.0)), ('b', 'directional', (0.0, 0.0, 0.0))
+        ('a', 'point', (1.0, 2.0, 3.0)),
+        ('b', 'directional', (0.0, 0.0, 0.0)),
     ]
 
 
@@ -188,58 +212,87 @@ def test_a_model_without_name_is_left_out():
 
 
 def test_omissions_are_reported_once_with_path_and_line(caplog):
-    load('\n<actor name="walker"><pose>0 0 0 0 0 0</pose></actor>\n<population name="p"><a>1</a>'
-         '</population><wind><linear_velocity>0 0 0</linear_velocity></wind><audio><a>1</a>'
-         '</audio>')
+    load(
+        '\n<actor name="walker"><pose>0 0 0 0 0 0</pose></actor>\n<population name="p"><a>1</a>'
+        '</population><wind><linear_velocity>0 0 0</linear_velocity></wind><audio><a>1</a>'
+        '</audio>'
+    )
     assert [record.getMessage() for record in caplog.records] == [
         'w.world: not simulated: world/actor (line 2), world/population (line 3)'
     ]
 
 
 def test_saved_state_is_separate_from_the_initial_poses():
-    world = load(BOX.format('m', '0 0 0 0 0 0') + '''<state world_name="w">
+    world = load(
+        BOX.format('m', '0 0 0 0 0 0')
+        + """<state world_name="w">
       <sim_time>12 500000000</sim_time><real_time>3 0</real_time><iterations>7</iterations>
       <model name="m"><pose>1 0 0 0 0 0</pose><scale>1 1 1</scale>
         <link name="link"><pose>1 0 0 0 0 0</pose><velocity>9 0 0 0 0 0</velocity></link>
         <model name="in"><link name="l"><pose>2 0 0 0 0 0</pose></link></model></model></state>
-      <state world_name="w"><sim_time>99 0</sim_time></state>''')
+      <state world_name="w"><sim_time>99 0</sim_time></state>"""
+    )
     assert world.time == 12.5
     assert world.models[0][1] == Pose()
     state = world.states[0]
     assert (state.name, state.pose.position) == ('m', (1.0, 0.0, 0.0))
     assert {name: pose.position for name, pose in state.links.items()} == {
-        'link': (1.0, 0.0, 0.0), 'in::l': (2.0, 0.0, 0.0)
+        'link': (1.0, 0.0, 0.0),
+        'in::l': (2.0, 0.0, 0.0),
     }
 
 
-
-@pytest.mark.parametrize('body, part', [
-    ('<physics><max_step_size>0</max_step_size></physics>',
-     'line 1: <max_step_size> is wrong: step_size is 0; it must be from 1e-09 to 10 [s]'),
-    ('<physics><ode><solver><iters>50000</iters></solver></ode></physics>', 'from 0 to 10000'),
-    ('<physics><real_time_update_rate>-5</real_time_update_rate></physics>', 'from 0 to inf [Hz]'),
-    ('<physics><real_time_update_rate>1e-7</real_time_update_rate></physics>', 'at least 0.001'),
-    ('<physics><max_step_size>fast</max_step_size></physics>', 'it takes one finite number'),
-    ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
-])
+@pytest.mark.parametrize(
+    'body, part',
+    [
+        (
+            '<physics><max_step_size>0</max_step_size></physics>',
+            'line 1: <max_step_size> is wrong: step_size is 0; it must be from 1e-09 to 10 [s]',
+        ),
+        ('<physics><ode><solver><iters>50000</iters></solver></ode></physics>', 'from 0 to 10000'),
+        (
+            '<physics><real_time_update_rate>-5</real_time_update_rate></physics>',
+            'from 0 to inf [Hz]',
+        ),
+        (
+            '<physics><real_time_update_rate>1e-7</real_time_update_rate></physics>',
+            'at least 0.001',
+        ),
+        ('<physics><max_step_size>fast</max_step_size></physics>', 'it takes one finite number'),
+        ('<gravity>0 0</gravity>', 'it takes three finite numbers'),
+    ],
+)
 def test_invalid_element_of_the_world_is_rejected(body, part):
     assert part in error_message(body)
 
 
-@pytest.mark.parametrize('body, logged, without', [
-    ('<light type="laser" name="l"/>', "light type 'laser' is unknown", 'this light is left out'),
-    ('<light type="point"/>', 'a <light> without name', 'this light is left out'),
-    ('<light name="l"><pose>a b</pose></light>', 'it takes six finite numbers', 'this light'),
-    ('<frame/>', 'a <frame> without name', 'this frame is left out'),
-    ('<frame name="f"><pose>far away</pose></frame>', 'six finite', 'this frame is left out'),
-    (BOX.format('b', '1 2 nan'), 'it takes six finite numbers', 'this model is left out'),
-    ('<include><uri>model://ground_plane</uri><name>g</name><pose>a</pose></include>',
-     'it takes six finite numbers', 'this model is left out'),
-    ('<include><uri>https://fuel/x</uri></include>', 'not fetched', 'this model is left out'),
-    ('<model/>', 'a <model> without name', 'this model is left out'),
-    ('<state world_name="w"><model name="m"><pose>a</pose></model></state>',
-     'it takes six finite numbers', "the world's <state> is not applied"),
-])
+@pytest.mark.parametrize(
+    'body, logged, without',
+    [
+        (
+            '<light type="laser" name="l"/>',
+            "light type 'laser' is unknown",
+            'this light is left out',
+        ),
+        ('<light type="point"/>', 'a <light> without name', 'this light is left out'),
+        ('<light name="l"><pose>a b</pose></light>', 'it takes six finite numbers', 'this light'),
+        ('<frame/>', 'a <frame> without name', 'this frame is left out'),
+        ('<frame name="f"><pose>far away</pose></frame>', 'six finite', 'this frame is left out'),
+        (BOX.format('b', '1 2 nan'), 'it takes six finite numbers', 'this model is left out'),
+        (
+            '<include><uri>model://ground_plane</uri><name>g</name><pose>a</pose></include>',
+            'it takes six finite numbers',
+            'this model is left out',
+        ),
+        ('<include><uri>https://fuel/x</uri></include>', 'not fetched', 'this model is left out'),
+        ('<model/>', 'a <model> without name', 'this model is left out'),
+        (
+            '<state world_name="w"><model name="m"><pose>a</pose></model></state>',
+            'it takes six finite numbers',
+            "the world's <state> is not applied",
+        ),
+    ],
+)
 def test_invalid_element_is_left_out_of_the_world(body, logged, without, caplog):
     world = load(body + GROUND)
     assert [model.name for model, _ in world.models] == ['ground_plane']
@@ -251,11 +304,15 @@ def test_invalid_element_is_left_out_of_the_world(body, logged, without, caplog)
 
 def test_model_of_many_links_is_kept_without_its_missing_mesh(caplog):
     wall = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
-    mailbox = ('<{0} name="{0}"><geometry><mesh><uri>model://letters/meshes/letters.dae</uri>'
-               '</mesh></geometry></{0}>')
-    house = (f'<model name="house"><static>1</static><link name="wall">{wall}</link>'
-             f'<link name="mailbox">{mailbox.format("collision")}{mailbox.format("visual")}</link>'
-             '</model>')
+    mailbox = (
+        '<{0} name="{0}"><geometry><mesh><uri>model://letters/meshes/letters.dae</uri>'
+        '</mesh></geometry></{0}>'
+    )
+    house = (
+        f'<model name="house"><static>1</static><link name="wall">{wall}</link>'
+        f'<link name="mailbox">{mailbox.format("collision")}{mailbox.format("visual")}</link>'
+        '</model>'
+    )
     world = load(GROUND + house)
     assert [model.name for model, _ in world.models] == ['ground_plane', 'house']
     spec = world.models[1][0]
@@ -263,18 +320,24 @@ def test_model_of_many_links_is_kept_without_its_missing_mesh(caplog):
     assert spec.left_out == ("mesh 'model://letters/meshes/letters.dae'",)
     assert world.faults == ()
     (logged,) = caplog.messages
-    assert logged.endswith("; left out: collision of link 'mailbox' (line 1), "
-                         "visual of link 'mailbox' (line 1)")
+    assert logged.endswith(
+        "; left out: collision of link 'mailbox' (line 1), visual of link 'mailbox' (line 1)"
+    )
 
 
-@pytest.mark.parametrize('pose, position, count', [
-    ('1 2 0.5 0 0', (1.0, 2.0, 0.5), 5), ('1', (1.0, 0.0, 0.0), 1),
-    ('1 2 3 0 0 0 7', (1.0, 2.0, 3.0), 7),
-])
+@pytest.mark.parametrize(
+    'pose, position, count',
+    [
+        ('1 2 0.5 0 0', (1.0, 2.0, 0.5), 5),
+        ('1', (1.0, 0.0, 0.0), 1),
+        ('1 2 3 0 0 0 7', (1.0, 2.0, 3.0), 7),
+    ],
+)
 def test_pose_with_wrong_count_of_numbers_is_read_as_in_gazebo(pose, position, count, caplog):
     box = BOX.format('b', pose)
-    include = ('<include><uri>model://ground_plane</uri><name>floor</name>'
-               f'<pose>{pose}</pose></include>')
+    include = (
+        f'<include><uri>model://ground_plane</uri><name>floor</name><pose>{pose}</pose></include>'
+    )
     world = load(f'{box}\n{include}')
     assert [at.position for _, at in world.models] == [position, position]
     logged = [message for message in caplog.messages if 'six numbers' in message]
@@ -296,10 +359,12 @@ def test_error_names_a_missing_file(tmp_path):
 
 def test_addresses_may_be_relative_to_the_world_file(tmp_path):
     (tmp_path / 'floor.sdf').write_text(
-        '<sdf version="1.6"><model name="m"><link name="a"/></model></sdf>', encoding='utf-8')
+        '<sdf version="1.6"><model name="m"><link name="a"/></model></sdf>', encoding='utf-8'
+    )
     (tmp_path / 'w.world').write_text(
         '<sdf version="1.6"><world name="w"><include><uri>floor.sdf</uri></include></world></sdf>',
-        encoding='utf-8')
+        encoding='utf-8',
+    )
     world = open_world(tmp_path / 'w.world', find_model=ModelSearch())
     assert [model.name for model, _ in world.models] == ['m']
 

@@ -32,8 +32,10 @@ INNER = """<model name="outer"><link name="base"/><model name="inner"><pose>1 2 
 <joint name="j" type="revolute"><parent>base</parent><child>inner::tip</child>
 <pose>0.1 0.2 0.3 0.4 0.5 0.6</pose><axis><xyz>0.6 0.1 0.3</xyz></axis></joint></model>"""
 SUBMESH = re.compile(r'<node[^>]* name="([^"]+)"')
-UNREAD = ('<gui><camera name="user"><pose>1 2 3 0 0.5 0</pose></camera></gui>'
-          '<magnetic_field>1e-6 2e-6 3e-6</magnetic_field>')
+UNREAD = (
+    '<gui><camera name="user"><pose>1 2 3 0 0.5 0</pose></camera></gui>'
+    '<magnetic_field>1e-6 2e-6 3e-6</magnetic_field>'
+)
 
 
 def read(text):
@@ -55,16 +57,34 @@ def test_the_included_worlds_are_read_as_they_were_written(name):
 
 
 def test_every_setting_of_a_world_is_written():
-    physics = PhysicsSettings(0.002, 250.0, (0.1, 0.2, -3.7), False, 3, 70, 1.1, 0.0, 1e-5, 0.3,
-                              0.002, 50.0, 15, True)
+    physics = PhysicsSettings(
+        0.002, 250.0, (0.1, 0.2, -3.7), False, 3, 70, 1.1, 0.0, 1e-5, 0.3, 0.002, 50.0, 15, True
+    )
     lights = (
-        LightSpec('sun', 'directional', Pose((1.0, 2.0, 30.0), TURN), (0.1, 0.2, 0.3, 0.4),
-                  (0.5, 0.6, 0.7, 0.8), 20.0, 0.5, 0.25, 0.125, (0.1, 0.2, -0.9), True),
+        LightSpec(
+            'sun',
+            'directional',
+            Pose((1.0, 2.0, 30.0), TURN),
+            (0.1, 0.2, 0.3, 0.4),
+            (0.5, 0.6, 0.7, 0.8),
+            20.0,
+            0.5,
+            0.25,
+            0.125,
+            (0.1, 0.2, -0.9),
+            True,
+        ),
         LightSpec('spot', 'spot', spot_inner_angle=0.3, spot_outer_angle=0.7, spot_falloff=2.0),
-        LightSpec('lamp'))
-    spec = WorldSpec('mars', physics=physics, lights=lights,
-                     scene=SceneSpec((0.1, 0.2, 0.3, 1.0), (0.4, 0.5, 0.6, 1.0), False,
-                                     Pose((1.0, 2.0, 3.0), TURN)))
+        LightSpec('lamp'),
+    )
+    spec = WorldSpec(
+        'mars',
+        physics=physics,
+        lights=lights,
+        scene=SceneSpec(
+            (0.1, 0.2, 0.3, 1.0), (0.4, 0.5, 0.6, 1.0), False, Pose((1.0, 2.0, 3.0), TURN)
+        ),
+    )
     assert replace(again(spec), parts=()) == spec
 
 
@@ -85,7 +105,8 @@ def test_textures_and_parts_of_meshes_are_found_again(tmp_path):
     (tmp_path / 'materials' / 'textures' / 'wood.png').write_bytes(b'')
     (tmp_path / 'materials' / 'scripts' / 'm.material').write_text(
         'material My/Wood { technique { pass { ambient 1 0.5 0.25 1 \n texture_unit {\n'
-        'texture wood.png\n } } } }')
+        'texture wood.png\n } } } }'
+    )
     (tmp_path / 'part.dae').write_bytes((ROOT / 'meshes' / 'battery.dae').read_bytes())
     part = SUBMESH.search((tmp_path / 'part.dae').read_text())[1]
     path = tmp_path / 'w.world'
@@ -101,7 +122,10 @@ def test_textures_and_parts_of_meshes_are_found_again(tmp_path):
     assert visual.material.image.endswith('wood.png')
     assert found.material == visual.material
     assert (found.geometry.path, found.geometry.submesh, found.geometry.is_centred) == (
-        visual.geometry.path, part, True)
+        visual.geometry.path,
+        part,
+        True,
+    )
     assert (other.geometry.path, other.geometry.scale) == (str(tmp_path / 'part.dae'), (2, 2, 2))
     assert whole.geometry.path == other.geometry.path
 
@@ -111,7 +135,10 @@ def test_a_nested_model_is_written_with_its_frame_and_its_links_bit_for_bit():
     found = again(spec)
     (model, _), (written, _) = found.models[0], spec.models[0]
     assert (model.links, model.joints, model.nested) == (
-        written.links, written.joints, written.nested)
+        written.links,
+        written.joints,
+        written.nested,
+    )
 
 
 def test_reduced_links_are_found_again():
@@ -122,28 +149,44 @@ def test_reduced_links_are_found_again():
 
 @pytest.mark.parametrize('effort', [5.0, math.inf])
 def test_a_state_is_read_bit_for_bit(effort):
-    model = ModelSpec('m', (BODY, replace(BODY, name='k')), (JointSpec('j', 'revolute', 'l', 'k'),),
-                      static=True)
+    model = ModelSpec(
+        'm', (BODY, replace(BODY, name='k')), (JointSpec('j', 'revolute', 'l', 'k'),), static=True
+    )
     state = ModelState(
-        'm', Pose((0.1, 1 / 3, -2e-17), TURN), {'l': Pose((1.0, 2.0, 3.0), TURN), 'k': Pose()},
-        {'l': Twist((0.1, 0.2, 0.3), (1e-300, 5.0, 6.0)), 'k': Twist()}, {'j': (37.3, -2 / 3)},
-        {'j': (0.5, effort)}, {'l': Pose((3.0, 2.0, 1.0), TURN)})
+        'm',
+        Pose((0.1, 1 / 3, -2e-17), TURN),
+        {'l': Pose((1.0, 2.0, 3.0), TURN), 'k': Pose()},
+        {'l': Twist((0.1, 0.2, 0.3), (1e-300, 5.0, 6.0)), 'k': Twist()},
+        {'j': (37.3, -2 / 3)},
+        {'j': (0.5, effort)},
+        {'l': Pose((3.0, 2.0, 1.0), TURN)},
+    )
     spec = WorldSpec(models=((model, Pose()),), states=(state,), time=1234.567)
     found = again(spec)
     assert (found.states, found.time) == (spec.states, spec.time)
 
 
-@pytest.mark.parametrize('pitch', [0.0, 1.2, *(
-    sign * (math.pi / 2.0 - offset) for sign in (1, -1) for offset in (0.0, 1e-9, 1e-7, 1e-3))])
+@pytest.mark.parametrize(
+    'pitch',
+    [
+        0.0,
+        1.2,
+        *(
+            sign * (math.pi / 2.0 - offset)
+            for sign in (1, -1)
+            for offset in (0.0, 1e-9, 1e-7, 1e-3)
+        ),
+    ],
+)
 @pytest.mark.parametrize('yaw', [0.0, 0.3, -2.9, math.pi])
 def test_a_pose_means_the_same_to_programs_that_read_angles_only(pitch, yaw):
     q = from_rpy(0.4, pitch, yaw)
     text = sdf_of_world(WorldSpec(lights=(LightSpec('a', pose=Pose(orientation=q)),)))
-    light, = read(text).lights
+    (light,) = read(text).lights
     assert light.pose.orientation == q
     element = etree.fromstring(text).find('world/light/pose')
     element.attrib.clear()
-    plain, = read(etree.tostring(element.getroottree().getroot(), encoding='unicode')).lights
+    (plain,) = read(etree.tostring(element.getroottree().getroot(), encoding='unicode')).lights
     for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)):
         assert rotate(plain.pose.orientation, axis) == pytest.approx(rotate(q, axis), abs=1e-7)
 
@@ -152,14 +195,16 @@ def test_angles_that_are_changed_by_hand_are_believed():
     text = sdf_of_world(WorldSpec(lights=(LightSpec('a', pose=Pose(orientation=TURN)),)))
     root = etree.fromstring(text)
     root.find('world/light/pose').text = '0 0 0 0 0 0.5'
-    light, = read(etree.tostring(root, encoding='unicode')).lights
+    (light,) = read(etree.tostring(root, encoding='unicode')).lights
     assert light.pose.orientation == from_rpy(0.0, 0.0, 0.5)
 
 
 def test_velocities_of_gazebos_own_states_are_not_applied_as_by_gazebo():
-    spec = world('<model name="m"><link name="l"/></model><state world_name="w"><model name="m">'
-                 '<link name="l"><pose>0 0 1 0 0 0</pose><velocity>1 2 3 0 0 0</velocity></link>'
-                 '</model></state>')
+    spec = world(
+        '<model name="m"><link name="l"/></model><state world_name="w"><model name="m">'
+        '<link name="l"><pose>0 0 1 0 0 0</pose><velocity>1 2 3 0 0 0</velocity></link>'
+        '</model></state>'
+    )
     assert spec.states[0].twists == {}
 
 
@@ -178,11 +223,16 @@ def test_axes_that_are_no_rotation_do_not_count():
 
 def _without_lines(value):
     """Return a value as text, without the lines on which its elements were read."""
+
     def keep(part):
         if hasattr(part, '__dataclass_fields__'):
-            return {name: keep(getattr(part, name)) for name in part.__dataclass_fields__
-                    if name not in ('line', 'location')}
+            return {
+                name: keep(getattr(part, name))
+                for name in part.__dataclass_fields__
+                if name not in ('line', 'location')
+            }
         if isinstance(part, (tuple, list)):
             return [keep(one) for one in part]
         return part
+
     return keep(value)

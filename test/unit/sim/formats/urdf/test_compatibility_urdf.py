@@ -9,18 +9,26 @@ from rosbots_description.sim.formats.urdf import gazebo_tags
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
 MISSING = 'not supported'
-INERTIAL = ('<inertial><mass value="1"/>'
-            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
-SHAPES = ''.join(f'<{tag}><geometry><sphere radius="1"/></geometry></{tag}>'
-                 for tag in ('collision', 'visual'))
-ROBOT = f'''<robot name="r"><link name="a">{INERTIAL}{SHAPES}</link><link name="b">{INERTIAL}</link>
+INERTIAL = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
+SHAPES = ''.join(
+    f'<{tag}><geometry><sphere radius="1"/></geometry></{tag}>' for tag in ('collision', 'visual')
+)
+ROBOT = f"""<robot name="r"><link name="a">{INERTIAL}{SHAPES}</link><link name="b">{INERTIAL}</link>
 <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
 <link name="c">{INERTIAL}</link>
-<joint name="turning" type="continuous"><parent link="a"/><child link="c"/></joint>'''
-VALUES = dict.fromkeys(('diffuse', 'ambient'), '1 0 0 1') \
-    | dict.fromkeys(('material', 'name'), 'Gazebo/Red') | {'fdir1': '1 0 0', 'gravity': '0'} \
-    | dict.fromkeys(('static', 'selfCollide', 'self_collide', 'preserveFixedJoint',
-                     'disableFixedJointLumping'), '1')
+<joint name="turning" type="continuous"><parent link="a"/><child link="c"/></joint>"""
+VALUES = (
+    dict.fromkeys(('diffuse', 'ambient'), '1 0 0 1')
+    | dict.fromkeys(('material', 'name'), 'Gazebo/Red')
+    | {'fdir1': '1 0 0', 'gravity': '0'}
+    | dict.fromkeys(
+        ('static', 'selfCollide', 'self_collide', 'preserveFixedJoint', 'disableFixedJointLumping'),
+        '1',
+    )
+)
 
 
 def rows():
@@ -57,13 +65,15 @@ def test_gazebo_element_agrees_with_its_row(name, state, how, caplog):
         assert message == {}
         return
     (sentence,) = message
-    assert f"<{name.rpartition('/')[2]}>" in sentence
+    assert f'<{name.rpartition("/")[2]}>' in sentence
     assert (message[sentence] == logging.DEBUG) == ('level debug' in how)
 
 
 def test_every_known_gazebo_element_has_a_row():
     tags = {*gazebo_tags._SURFACE_NUMBERS, *gazebo_tags._LINK_READERS, *gazebo_tags._PARTS}
-    known = {f'link/{tag}' for tag in tags - {'collision'}} \
-        | {f'link/collision/{path}' for path in gazebo_tags._SURFACE_PATHS} \
+    known = (
+        {f'link/{tag}' for tag in tags - {'collision'}}
+        | {f'link/collision/{path}' for path in gazebo_tags._SURFACE_PATHS}
         | {f'joint/{tag}' for tag in gazebo_tags._JOINT_TAGS}
+    )
     assert known <= {name for name, _, _ in ROWS}

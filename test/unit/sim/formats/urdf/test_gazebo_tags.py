@@ -12,8 +12,10 @@ from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 
 GREY = (0.7, 0.7, 0.7, 1.0)
 BALL = '<geometry><sphere radius="1"/></geometry>'
-INERTIAL = ('<inertial><mass value="1"/>'
-            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>')
+INERTIAL = (
+    '<inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
 FULL = f'{INERTIAL}<collision>{BALL}</collision><visual>{BALL}</visual>'
 # b is at x = 1 m in a, rotated left by 90 degrees; c moves on b.
 ROBOT = (
@@ -51,8 +53,16 @@ def test_without_blocks_everything_has_sdfs_defaults():
 
 @pytest.mark.parametrize('form', ['<{0}>{1}</{0}>', '<{0} value="{1}"/>', '<{0}> {1} </{0}>'])
 def test_a_surface_is_read_from_text_or_attribute(form):
-    values = {'mu1': 0.5, 'mu2': 0.6, 'kp': 1e6, 'kd': 100.0, 'maxVel': 1.0, 'minDepth': 0.001,
-              'maxContacts': 5, 'laserRetro': 2.0}
+    values = {
+        'mu1': 0.5,
+        'mu2': 0.6,
+        'kp': 1e6,
+        'kd': 100.0,
+        'maxVel': 1.0,
+        'minDepth': 0.001,
+        'maxContacts': 5,
+        'laserRetro': 2.0,
+    }
     tags = ''.join(form.format(tag, value) for tag, value in values.items())
     tags += form.format('fdir1', '1 0 0')
     surface = load(f'<gazebo reference="c">{tags}</gazebo>').link('c').collisions[0].surface
@@ -60,9 +70,11 @@ def test_a_surface_is_read_from_text_or_attribute(form):
 
 
 def test_surface_in_the_structure_of_sdf_is_read():
-    block = ('<gazebo reference="c"><collision><surface><friction><ode><mu>0.1</mu><mu2>0.2</mu2>'
-             '</ode></friction><contact><ode><kp>5</kp></ode></contact></surface>'
-             '<max_contacts>3</max_contacts></collision></gazebo>')
+    block = (
+        '<gazebo reference="c"><collision><surface><friction><ode><mu>0.1</mu><mu2>0.2</mu2>'
+        '</ode></friction><contact><ode><kp>5</kp></ode></contact></surface>'
+        '<max_contacts>3</max_contacts></collision></gazebo>'
+    )
     surface = load(block).link('c').collisions[0].surface
     assert (surface.mu, surface.mu2, surface.kp, surface.max_contacts) == (0.1, 0.2, 5.0, 3)
 
@@ -80,17 +92,27 @@ def test_negative_or_infinite_friction_is_unlimited(written):
     assert spec.link('c').collisions[0].surface.mu == ENDLESS_FRICTION
 
 
-@pytest.mark.parametrize(('text', 'gravity'), [
-    ('true', False), ('1', False), ('false', True), ('No', True), ('0', True), ('what', False),
-])
+@pytest.mark.parametrize(
+    ('text', 'gravity'),
+    [
+        ('true', False),
+        ('1', False),
+        ('false', True),
+        ('No', True),
+        ('0', True),
+        ('what', False),
+    ],
+)
 def test_turn_gravity_off_reads_booleans_as_gazebo(text, gravity):
     block = f'<gazebo reference="c"><turnGravityOff>{text}</turnGravityOff></gazebo>'
     assert load(block).link('c').gravity is gravity
 
 
 def test_self_collision_and_damping_are_read():
-    link = load('<gazebo reference="c"><selfCollide>Yes</selfCollide>'
-                '<dampingFactor>0.3</dampingFactor></gazebo>').link('c')
+    link = load(
+        '<gazebo reference="c"><selfCollide>Yes</selfCollide>'
+        '<dampingFactor>0.3</dampingFactor></gazebo>'
+    ).link('c')
     assert (link.self_collide, link.linear_damping, link.angular_damping) == (True, 0.3, 0.3)
 
 
@@ -108,8 +130,10 @@ def test_an_unknown_material_is_grey_with_a_warning(caplog):
 
 
 def test_visual_block_sets_the_colour():
-    spec = load('<gazebo reference="c"><visual><material><ambient>0 0 0 1</ambient>'
-                '<diffuse>0.1 0.2 0.3 1</diffuse></material></visual></gazebo>')
+    spec = load(
+        '<gazebo reference="c"><visual><material><ambient>0 0 0 1</ambient>'
+        '<diffuse>0.1 0.2 0.3 1</diffuse></material></visual></gazebo>'
+    )
     material = spec.link('c').visuals[0].material
     assert material.rgba == (0.1, 0.2, 0.3, 1.0)
     assert material.reflection.ambient == (0.0, 0.0, 0.0)
@@ -134,17 +158,23 @@ def test_a_plugin_without_filename_is_ignored_with_a_warning(caplog):
     assert "plugin 'p': a <plugin> without filename is ignored" in caplog.text
 
 
-@pytest.mark.parametrize(('inside', 'expected'), [
-    ('', '/bot'), ('<robotNamespace>own</robotNamespace>', 'own'), ('<robotNamespace/>', ''),
-])
+@pytest.mark.parametrize(
+    ('inside', 'expected'),
+    [
+        ('', '/bot'),
+        ('<robotNamespace>own</robotNamespace>', 'own'),
+        ('<robotNamespace/>', ''),
+    ],
+)
 def test_namespace_is_given_to_plugins_without_one(inside, expected):
     (p,) = load(plugin(inside), robot_namespace='/bot').plugins
     assert p.element.child('robotNamespace').text == expected
 
 
 def test_namespace_is_given_to_plugins_in_sensors_unless_empty():
-    block = ('<gazebo reference="c"><sensor name="s"><plugin name="p" filename="l"/>'
-             '</sensor></gazebo>')
+    block = (
+        '<gazebo reference="c"><sensor name="s"><plugin name="p" filename="l"/></sensor></gazebo>'
+    )
     (sensor,) = load(block, robot_namespace='/bot').link('c').sensors
     assert sensor.plugins[0].element.child('robotNamespace').text == '/bot'
     (sensor,) = load(block).link('c').sensors
@@ -157,19 +187,23 @@ def test_namespace_with_control_characters_is_an_error():
 
 
 def test_sensors_lights_and_projectors_are_kept_in_their_link():
-    block = ('<gazebo reference="c"><sensor name="s"/><light name="l"/>'
-             '<projector name="p"/></gazebo>')
+    block = (
+        '<gazebo reference="c"><sensor name="s"/><light name="l"/><projector name="p"/></gazebo>'
+    )
     link = load(block).link('c')
     assert [sensor.name for sensor in link.sensors] == ['s']
     assert [part.tag for part in link.parts] == ['light', 'projector']
 
 
-@pytest.mark.parametrize(('pose', 'expected'), [
-    ('', (1.0, 0.0, 0.0, 0.0, 0.0, 1.5707963268)),
-    ('<pose>1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
-    ('<pose relative_to="b">1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
-    ('<pose relative_to="a">1 0 0 0 0 0</pose>', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
-])
+@pytest.mark.parametrize(
+    ('pose', 'expected'),
+    [
+        ('', (1.0, 0.0, 0.0, 0.0, 0.0, 1.5707963268)),
+        ('<pose>1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
+        ('<pose relative_to="b">1 0 0 0 0 0</pose>', (1.0, 1.0, 0.0, 0.0, 0.0, 1.5707963268)),
+        ('<pose relative_to="a">1 0 0 0 0 0</pose>', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    ],
+)
 def test_sensor_of_a_reduced_link_is_transformed_into_the_parent(pose, expected):
     block = f'<gazebo reference="b"><sensor name="s">{pose}<x/></sensor></gazebo>'
     (sensor,) = load(block).link('a').sensors
@@ -182,15 +216,17 @@ def test_names_in_plugins_are_kept_and_reduced_links_have_poses():
     inside = '<bodyName>b</bodyName><frameName>c</frameName><linkName>b</linkName>'
     spec = load(plugin(inside))
     assert texts(spec.plugins[0].element) == {'bodyName': 'b', 'frameName': 'c', 'linkName': 'b'}
-    (name, (parent, pose)), = spec.reduced.items()
+    ((name, (parent, pose)),) = spec.reduced.items()
     assert (name, parent) == ('b', 'a')
     assert pose.position == (1.0, 0.0, 0.0)
     assert to_rpy(pose.orientation) == pytest.approx((0.0, 0.0, math.pi / 2))
 
 
 def test_omissions_are_reported_once(caplog):
-    load('<gazebo reference="c"><glow/><glow/></gazebo>\n<gazebo><wind/></gazebo>'
-         '<gazebo reference="bc"><physics>1</physics><stopCfm>0</stopCfm></gazebo>')
+    load(
+        '<gazebo reference="c"><glow/><glow/></gazebo>\n<gazebo><wind/></gazebo>'
+        '<gazebo reference="bc"><physics>1</physics><stopCfm>0</stopCfm></gazebo>'
+    )
     assert caplog.messages == [
         "model 'bot' (s): not simulated in <gazebo> blocks: <glow> (line 2), <wind> (line 3), "
         '<physics> (line 3)'
@@ -199,12 +235,19 @@ def test_omissions_are_reported_once(caplog):
 
 def test_block_with_an_unknown_reference_is_reported_with_a_suggestion(caplog):
     load('<gazebo reference="ac"/>')
-    assert "there is no link or joint of that name; the block is ignored" in caplog.text
+    assert 'there is no link or joint of that name; the block is ignored' in caplog.text
 
 
-@pytest.mark.parametrize(('tag', 'text'), [
-    ('mu1', 'abc'), ('kp', 'nan'), ('kd', '-1'), ('fdir1', '1 0'), ('dampingFactor', 'x'),
-])
+@pytest.mark.parametrize(
+    ('tag', 'text'),
+    [
+        ('mu1', 'abc'),
+        ('kp', 'nan'),
+        ('kd', '-1'),
+        ('fdir1', '1 0'),
+        ('dampingFactor', 'x'),
+    ],
+)
 def test_malformed_number_in_a_block_is_an_error(tag, text):
     with pytest.raises(ModelError, match=rf"^s, line 2: <gazebo reference='c'>: <{tag}> is "):
         load(f'<gazebo reference="c"><{tag}>{text}</{tag}></gazebo>')
@@ -218,8 +261,10 @@ def test_empty_numbers_in_a_block_are_ignored_with_a_warning(caplog):
 
 
 def test_springs_of_joints_are_read(caplog):
-    made = load('<gazebo reference="bc"><springStiffness>7.5</springStiffness>'
-                '<springReference>-0.5</springReference></gazebo>')
+    made = load(
+        '<gazebo reference="bc"><springStiffness>7.5</springStiffness>'
+        '<springReference>-0.5</springReference></gazebo>'
+    )
     joint = next(joint for joint in made.joints if joint.name == 'bc')
     assert (joint.stiffness, joint.reference) == (7.5, -0.5)
     assert not caplog.messages

@@ -36,43 +36,65 @@ def logged(caplog):
 def test_missing_mesh_is_one_error_that_lists_its_users(caplog, tmp_path):
     mesh = '<mesh filename="package://p/wheel.dae"/>'
     spec = urdf(
-        shape('collision', mesh) + shape('collision', '<box size="1 1 1"/>')
-        + '\n' + shape('visual', mesh), find_package={'p': str(tmp_path)}.get)
+        shape('collision', mesh)
+        + shape('collision', '<box size="1 1 1"/>')
+        + '\n'
+        + shape('visual', mesh),
+        find_package={'p': str(tmp_path)}.get,
+    )
     assert [part.geometry for part in spec.links[0].collisions] == [Box((1.0, 1.0, 1.0))]
     assert spec.links[0].visuals == ()
     assert spec.left_out == ("mesh 'package://p/wheel.dae'",)
-    assert logged(caplog) == [('ERROR', (
-        f"model 'bot' (bot.urdf): mesh file '{tmp_path}/wheel.dae' does not exist or cannot be "
-        "reached; check name and package (written 'package://p/wheel.dae'); "
-        "left out: collision of link 'a' (line 2), visual of link 'a' (line 3)"))]
+    assert logged(caplog) == [
+        (
+            'ERROR',
+            (
+                f"model 'bot' (bot.urdf): mesh file '{tmp_path}/wheel.dae' does not exist or cannot be "
+                "reached; check name and package (written 'package://p/wheel.dae'); "
+                "left out: collision of link 'a' (line 2), visual of link 'a' (line 3)"
+            ),
+        )
+    ]
 
 
 def test_error_about_a_mesh_missing_from_the_model_path_lists_the_searched_folders(
-        caplog, tmp_path):
-    spec = sdf(shape('collision', '<mesh><uri>model://mailbox/m.dae</uri></mesh>'),
-               ModelSearch([tmp_path / 'a', tmp_path / 'b']))
+    caplog, tmp_path
+):
+    spec = sdf(
+        shape('collision', '<mesh><uri>model://mailbox/m.dae</uri></mesh>'),
+        ModelSearch([tmp_path / 'a', tmp_path / 'b']),
+    )
     assert spec.links[0].collisions == ()
     assert spec.left_out == ("mesh 'model://mailbox/m.dae'",)
     ((level, sentence),) = logged(caplog)
     assert level == 'ERROR'
-    assert sentence.startswith("b.sdf: 'model://mailbox/m.dae' is not to be found along the model "
-                               f"path ({tmp_path}/a, {tmp_path}/b); add the folder")
+    assert sentence.startswith(
+        "b.sdf: 'model://mailbox/m.dae' is not to be found along the model "
+        f'path ({tmp_path}/a, {tmp_path}/b); add the folder'
+    )
     assert sentence.endswith("; left out: collision of link 'a' (line 2)")
 
 
 def test_meshes_of_a_urdf_are_found_on_the_model_path(tmp_path):
     (tmp_path / 'bot').mkdir()
     (tmp_path / 'bot' / 'm.OBJ').write_text(TRIANGLE)
-    spec = urdf(shape('collision', '<mesh filename="model://bot/m.OBJ" scale="-1 1 1"/>'),
-                find_model=ModelSearch([tmp_path]))
+    spec = urdf(
+        shape('collision', '<mesh filename="model://bot/m.OBJ" scale="-1 1 1"/>'),
+        find_model=ModelSearch([tmp_path]),
+    )
     assert spec.links[0].collisions[0].geometry.path == str(tmp_path / 'bot' / 'm.OBJ')
     assert spec.left_out == ()
 
 
-@pytest.mark.parametrize('filename, reason', [
-    ('{folder}/m.obj', 'is broken'), ('meshes/m.obj', 'is not to be found in'),
-    ('http://host/m.obj', 'http:// addresses are not read'), ('{folder}/m.wrl', 'is not read'),
-])
+@pytest.mark.parametrize(
+    'filename, reason',
+    [
+        ('{folder}/m.obj', 'is broken'),
+        ('meshes/m.obj', 'is not to be found in'),
+        ('http://host/m.obj', 'http:// addresses are not read'),
+        ('{folder}/m.wrl', 'is not read'),
+    ],
+)
 def test_unreadable_mesh_is_left_out(tmp_path, caplog, filename, reason):
     for name in ('m.obj', 'm.wrl'):
         (tmp_path / name).write_text('v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n')
@@ -83,11 +105,18 @@ def test_unreadable_mesh_is_left_out(tmp_path, caplog, filename, reason):
     assert sentence.endswith("; left out: visual of link 'a' (line 2)")
 
 
-@pytest.mark.parametrize('geometry', [
-    '<box size="0 0 0"/>', '<box size="1 0 1"/>', '<sphere radius="0"/>', '<sphere radius="0.0"/>',
-    '<cylinder radius="0" length="1"/>', '<cylinder radius="1" length="0"/>',
-    '<mesh filename="/nowhere/m.dae" scale="1 0 0"/>',
-])
+@pytest.mark.parametrize(
+    'geometry',
+    [
+        '<box size="0 0 0"/>',
+        '<box size="1 0 1"/>',
+        '<sphere radius="0"/>',
+        '<sphere radius="0.0"/>',
+        '<cylinder radius="0" length="1"/>',
+        '<cylinder radius="1" length="0"/>',
+        '<mesh filename="/nowhere/m.dae" scale="1 0 0"/>',
+    ],
+)
 @pytest.mark.parametrize('kind', ['collision', 'visual'])
 def test_a_shape_of_a_urdf_without_size_is_left_out(kind, geometry, caplog):
     spec = urdf(shape(kind, geometry))
@@ -99,11 +128,15 @@ def test_a_shape_of_a_urdf_without_size_is_left_out(kind, geometry, caplog):
     assert sentence.endswith(f'reduces it to nothing; the {kind} is left out')
 
 
-@pytest.mark.parametrize('geometry', [
-    '<box><size>0 0 0</size></box>', '<sphere><radius>0</radius></sphere>',
-    '<cylinder><radius>1</radius><length>0</length></cylinder>',
-    '<mesh><uri>/nowhere/m.dae</uri><scale>1 0 0</scale></mesh>',
-])
+@pytest.mark.parametrize(
+    'geometry',
+    [
+        '<box><size>0 0 0</size></box>',
+        '<sphere><radius>0</radius></sphere>',
+        '<cylinder><radius>1</radius><length>0</length></cylinder>',
+        '<mesh><uri>/nowhere/m.dae</uri><scale>1 0 0</scale></mesh>',
+    ],
+)
 @pytest.mark.parametrize('kind', ['collision', 'visual'])
 def test_a_shape_of_an_sdf_without_size_is_left_out(kind, geometry, caplog):
     spec = sdf(shape(kind, geometry))
@@ -130,8 +163,10 @@ def test_model_is_read_without_a_missing_include_and_its_joint(caplog):
 
 
 def test_links_without_mass_are_omissions():
-    spec = urdf(after='<link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
-                '<child link="b"/></joint>')
+    spec = urdf(
+        after='<link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
+        '<child link="b"/></joint>'
+    )
     assert spec.left_out == ("link 'b'",)
 
 
@@ -142,20 +177,27 @@ def test_log_about_thousands_of_missing_meshes_is_short(caplog):
     assert all(len(message) < 2500 for message in caplog.messages)
 
 
-@pytest.mark.parametrize('filename', [
-    'libgazebo_ros_elevator.so', '/opt/ros/noetic/lib/libgazebo_ros_elevator.so',
-    'gazebo_ros_elevator',
-])
+@pytest.mark.parametrize(
+    'filename',
+    [
+        'libgazebo_ros_elevator.so',
+        '/opt/ros/noetic/lib/libgazebo_ros_elevator.so',
+        'gazebo_ros_elevator',
+    ],
+)
 def test_known_library_is_recognised_in_any_spelling(filename):
     assert library_remark(filename) == 'libgazebo_ros_elevator.so is known but not supported yet'
 
 
-@pytest.mark.parametrize('filename, remark', [
-    ('libgazebo_ros_dif_drive.so', "did you mean 'libgazebo_ros_diff_drive.so'?"),
-    ('libhector_sonar.so', 'nothing is loaded from GAZEBO_PLUGIN_PATH'),
-    ('', "unknown library ''"),
-    ('libgazebo_ros_diff_drive.so', 'works only in a <gazebo> or <model>'),
-])
+@pytest.mark.parametrize(
+    'filename, remark',
+    [
+        ('libgazebo_ros_dif_drive.so', "did you mean 'libgazebo_ros_diff_drive.so'?"),
+        ('libhector_sonar.so', 'nothing is loaded from GAZEBO_PLUGIN_PATH'),
+        ('', "unknown library ''"),
+        ('libgazebo_ros_diff_drive.so', 'works only in a <gazebo> or <model>'),
+    ],
+)
 def test_unknown_library_has_its_own_remark(filename, remark):
     assert remark in library_remark(filename)
 

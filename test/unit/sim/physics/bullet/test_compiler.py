@@ -52,8 +52,10 @@ def chain(joints):
 
 def rough(surfaces, joints=0):
     """Return a chain whose first link has collisions with different surfaces."""
-    shapes = tuple(Collision(f'c{i}', Box((0.1, 0.1, 0.1)), surface=Surface(mu=1.0 + i / 1000))
-                   for i in range(surfaces))
+    shapes = tuple(
+        Collision(f'c{i}', Box((0.1, 0.1, 0.1)), surface=Surface(mu=1.0 + i / 1000))
+        for i in range(surfaces)
+    )
     spec = chain(joints)
     return replace(spec, links=(replace(spec.links[0], collisions=shapes), *spec.links[1:]))
 
@@ -67,16 +69,34 @@ def seen(count):
     return ModelSpec('seen', (LinkSpec('link', inertial=MASS, visuals=shapes),))
 
 
-@pytest.mark.parametrize('made, most, message', [
-    (chain, size_limits.MAX_JOINTS, 'a kinematic tree of the model has more than 127 joints'),
-    (rough, size_limits.MAX_JOINTS + 1,
-     'has 128 collisions with surfaces of their own and 0 joints'),
-    (lambda count: rough(count, joints=100), 28, '28 collisions with surfaces of their own and '
-     '100 joints; the physics engine supports 127 of both: give the collisions of a link the same '
-     'mu'),
-    (loose, size_limits.MAX_LINKS, 'has 501 links that fixed joints do not merge; at most 500 are'),
-    (seen, size_limits.MAX_SHAPES, 'has 5001 collisions and visuals; at most 5000 are accepted'),
-])
+@pytest.mark.parametrize(
+    'made, most, message',
+    [
+        (chain, size_limits.MAX_JOINTS, 'a kinematic tree of the model has more than 127 joints'),
+        (
+            rough,
+            size_limits.MAX_JOINTS + 1,
+            'has 128 collisions with surfaces of their own and 0 joints',
+        ),
+        (
+            lambda count: rough(count, joints=100),
+            28,
+            '28 collisions with surfaces of their own and '
+            '100 joints; the physics engine supports 127 of both: give the collisions of a link the same '
+            'mu',
+        ),
+        (
+            loose,
+            size_limits.MAX_LINKS,
+            'has 501 links that fixed joints do not merge; at most 500 are',
+        ),
+        (
+            seen,
+            size_limits.MAX_SHAPES,
+            'has 5001 collisions and visuals; at most 5000 are accepted',
+        ),
+    ],
+)
 def test_model_beyond_a_limit_of_the_engine_is_rejected(meshes, made, most, message):
     compile_model(made(most), meshes)
     with pytest.raises(ModelError) as caught:
@@ -95,12 +115,15 @@ def test_error_begins_with_the_location_of_the_description(meshes):
         compile_model(replace(spec, links=too_many), meshes)
 
 
-@pytest.mark.parametrize(('extra', 'kind'), [
-    ('', 'hull'),
-    ('<gazebo><static>true</static></gazebo>', 'surface'),
-    (BOLT.format('fixed', '</joint>'), 'surface'),
-    (BOLT.format('revolute', LIMIT), 'hull'),
-])
+@pytest.mark.parametrize(
+    ('extra', 'kind'),
+    [
+        ('', 'hull'),
+        ('<gazebo><static>true</static></gazebo>', 'surface'),
+        (BOLT.format('fixed', '</joint>'), 'surface'),
+        (BOLT.format('revolute', LIMIT), 'hull'),
+    ],
+)
 def test_mesh_is_a_hull_if_movable_and_exact_if_static(tmp_path, meshes, extra, kind):
     source = tmp_path / 'm.obj'
     source.write_text(TETRAHEDRON)
@@ -131,8 +154,13 @@ def test_files_exist_as_long_as_their_model(tmp_path, meshes):
 def test_content_does_not_depend_on_names_visuals_and_pose(meshes):
     spec = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
     (link,) = spec.links
-    other = replace(spec, name='other', location='elsewhere', left_out=('a plugin',),
-                    links=(replace(link, visuals=()),))
+    other = replace(
+        spec,
+        name='other',
+        location='elsewhere',
+        left_out=('a plugin',),
+        links=(replace(link, visuals=()),),
+    )
     assert repr(compile_model(spec, meshes).bare()) == repr(compile_model(other, meshes).bare())
     heavier = replace(spec, links=(replace(link, inertial=replace(link.inertial, mass=3.0)),))
     assert repr(compile_model(spec, meshes).bare()) != repr(compile_model(heavier, meshes).bare())
@@ -141,5 +169,6 @@ def test_content_does_not_depend_on_names_visuals_and_pose(meshes):
 def test_fixed_joints_count_as_joints(meshes):
     spec = chain(size_limits.MAX_JOINTS + 1)
     with pytest.raises(ModelError, match='more than 127 joints'):
-        compile_model(replace(spec, joints=tuple(
-            replace(joint, type=FIXED) for joint in spec.joints)), meshes)
+        compile_model(
+            replace(spec, joints=tuple(replace(joint, type=FIXED) for joint in spec.joints)), meshes
+        )

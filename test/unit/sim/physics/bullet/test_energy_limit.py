@@ -68,7 +68,8 @@ def test_links_without_gravity_have_no_energy_of_height(bullet):
     bodies.after_step()
     middle = np.array(POSES[0][0]) - np.array(TWISTS[0][0]) * DT / 2.0
     assert noted(bodies)[2] == pytest.approx(
-        energies_of(TWISTS)[0] + LINK.mass * np.dot(GRAVITY, middle), rel=1e-12)
+        energies_of(TWISTS)[0] + LINK.mass * np.dot(GRAVITY, middle), rel=1e-12
+    )
 
 
 def test_energy_above_the_limit_is_taken_from_all_velocities_about_the_centre_of_mass(bullet):
@@ -120,7 +121,8 @@ def test_motors_and_dampers_change_the_limit_by_their_work(bullet):
     limit = noted(bodies)[1]
     bodies.after_step()
     assert noted(bodies)[1] - limit == pytest.approx(
-        DT * velocity * (effort - damping * velocity), rel=1e-6)
+        DT * velocity * (effort - damping * velocity), rel=1e-6
+    )
 
 
 def test_nothing_works_on_a_link_without_joints(bullet):

@@ -36,7 +36,8 @@ def is_corrected(bullet, of, angular, joint_speed=0.0):
 @pytest.mark.parametrize(('touched', 'threshold'), [((), 0.01), ((GROUND,), 0.1)])
 @pytest.mark.parametrize('axis', [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
 def test_articulated_bodies_are_corrected_above_dt_times_rate_squared(
-        bullet, touched, threshold, axis):
+    bullet, touched, threshold, axis
+):
     bullet.touched = set(touched)
     rate = math.sqrt(threshold / 0.001)
     for factor, expected in ((0.99, False), (1.01, True)):
@@ -112,10 +113,15 @@ def test_setting_a_velocity_checks_all_bodies_before_the_next_step(bullet):
     assert noted(bodies)[1] is None
 
 
-@pytest.mark.parametrize(('change', 'is_later'), [
-    (lambda bodies: bodies.set(DT, GRAVITY), False), (lambda bodies: bodies.clear(), False),
-    (lambda bodies: bodies.add({BODY: masses()}), True),
-    (lambda bodies: bodies.remove([BODY]), True)])
+@pytest.mark.parametrize(
+    ('change', 'is_later'),
+    [
+        (lambda bodies: bodies.set(DT, GRAVITY), False),
+        (lambda bodies: bodies.clear(), False),
+        (lambda bodies: bodies.add({BODY: masses()}), True),
+        (lambda bodies: bodies.remove([BODY]), True),
+    ],
+)
 def test_limits_are_dropped_with_what_they_were_measured_with(bullet, change, is_later):
     bodies = watched(masses())
     assert bodies.until_check == 0

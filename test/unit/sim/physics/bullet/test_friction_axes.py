@@ -24,16 +24,19 @@ def scales(link=None, turn=NO_ROTATION, friction=1.0, **surface):
     return friction_scales(collision, link, turn, friction)
 
 
-@pytest.mark.parametrize(('surface', 'expected'), [
-    ({'mu': 0.4, 'mu2': 0.4, 'fdir1': (1.0, 0.0, 0.0)}, ISOTROPIC),
-    ({'mu': 100.0, 'mu2': 50.0}, ISOTROPIC),  # as the ground
-    ({'mu': 0.5, 'mu2': 0.1}, (0.2, 1.0, 0.2)),
-    ({'mu': 0.1, 'mu2': 0.5}, (1.0, 0.2, 1.0)),
-    ({'mu': 5.0, 'mu2': 0.5}, (0.5, 1.0, 0.5)),
-    ({'mu': 5.0, 'mu2': 0.5, 'friction': 5.0}, (0.1, 1.0, 0.1)),
-    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (0.0, 0.0, 3.0)}, (0.2, 0.2, 1.0)),
-    ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, ISOTROPIC),  # along none of its axes
-])
+@pytest.mark.parametrize(
+    ('surface', 'expected'),
+    [
+        ({'mu': 0.4, 'mu2': 0.4, 'fdir1': (1.0, 0.0, 0.0)}, ISOTROPIC),
+        ({'mu': 100.0, 'mu2': 50.0}, ISOTROPIC),  # as the ground
+        ({'mu': 0.5, 'mu2': 0.1}, (0.2, 1.0, 0.2)),
+        ({'mu': 0.1, 'mu2': 0.5}, (1.0, 0.2, 1.0)),
+        ({'mu': 5.0, 'mu2': 0.5}, (0.5, 1.0, 0.5)),
+        ({'mu': 5.0, 'mu2': 0.5, 'friction': 5.0}, (0.1, 1.0, 0.1)),
+        ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (0.0, 0.0, 3.0)}, (0.2, 0.2, 1.0)),
+        ({'mu': 0.5, 'mu2': 0.1, 'fdir1': (1.0, 1.0, 0.0)}, ISOTROPIC),  # along none of its axes
+    ],
+)
 def test_friction_is_scaled_along_the_axis_of_the_lesser_mu(surface, expected):
     assert scales(**surface) == pytest.approx(expected)
 
@@ -49,10 +52,13 @@ def surface(turn=NO_ROTATION, **given):
     return Collision('c', Box((1, 1, 1)), Pose(orientation=turn), Surface(mu=0.5, mu2=0.1, **given))
 
 
-@pytest.mark.parametrize(('turn', 'given', 'expected'), [
-    (NO_ROTATION, (3.0, 0.0, 4.0), (0.6, 0.0, 0.8)),
-    (LEFT, (3.0, 4.0, 12.0), (-4.0 / 13.0, 3.0 / 13.0, 12.0 / 13.0)),
-])
+@pytest.mark.parametrize(
+    ('turn', 'given', 'expected'),
+    [
+        (NO_ROTATION, (3.0, 0.0, 4.0), (0.6, 0.0, 0.8)),
+        (LEFT, (3.0, 4.0, 12.0), (-4.0 / 13.0, 3.0 / 13.0, 12.0 / 13.0)),
+    ],
+)
 def test_first_direction_turns_with_its_collision_and_has_length_1(turn, given, expected):
     found = first_direction(surface(turn, fdir1=given), LinkSpec('l'))
     assert found == pytest.approx(expected)
@@ -75,6 +81,8 @@ def test_surfaces_of_equal_friction_in_equal_directions_can_share_a_part():
 def test_link_can_slip_along_a_common_axis_of_its_parts(turns, can):
     body, places = Body(0), [Place(0, index) for index in range(len(turns))]
     body.surfaces = {'wheel': places}
-    body.friction_axes = {place: FrictionAxes(from_rpy(turn, 0.0, 0.0), ISOTROPIC)
-                          for place, turn in zip(places, turns, strict=True)}
+    body.friction_axes = {
+        place: FrictionAxes(from_rpy(turn, 0.0, 0.0), ISOTROPIC)
+        for place, turn in zip(places, turns, strict=True)
+    }
     assert can_slip(body, 'wheel', (0.0, 1.0, 0.0)) == can

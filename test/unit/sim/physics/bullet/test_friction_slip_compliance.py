@@ -53,8 +53,12 @@ def test_friction_is_the_force_of_the_slip_by_implicit_euler(axle):
     scales = slip_scales([contacts], axle, (0.01, 0.02), STEP, lambda _: 0.5)
     gain = STEP * 9.8 / 4.9  # dt / m
     most = LIMIT * 0.5
-    assert scales == pytest.approx((abs(-2.0 * gain - 0.03) / (0.01 + gain) / most,
-                                    abs(4.0 * gain + 0.02) / (0.02 + gain) / most))
+    assert scales == pytest.approx(
+        (
+            abs(-2.0 * gain - 0.03) / (0.01 + gain) / most,
+            abs(4.0 * gain + 0.02) / (0.02 + gain) / most,
+        )
+    )
 
 
 def test_least_scale_is_a_thousandth():
@@ -63,8 +67,10 @@ def test_least_scale_is_a_thousandth():
 
 def test_contacts_without_load_or_friction_do_not_count():
     touching = touch(force=(0.0, -4.0, 0.0), velocity=(0.0, 0.06, 0.0))
-    for other in (touch(velocity=(5.0, 5.0, 0.0), load=0.0),
-                  touch(velocity=(5.0, 5.0, 0.0), limit=0.0)):
+    for other in (
+        touch(velocity=(5.0, 5.0, 0.0), load=0.0),
+        touch(velocity=(5.0, 5.0, 0.0), limit=0.0),
+    ):
         assert held(other) is None
         assert held(other, touching) == held(touching)
 
@@ -77,5 +83,6 @@ def test_velocity_is_the_mean_by_load_and_forces_and_limits_are_added():
 
 
 def test_velocity_of_a_point_is_that_of_a_rigid_body():
-    assert velocity_at((1.0, 0.0, 2.0), (0.0, 0.0, 2.0), (0.1, 0.2, 0.3), (0.0, 0.0, 2.0)) == \
-        pytest.approx((0.1, 2.2, 0.3))
+    assert velocity_at(
+        (1.0, 0.0, 2.0), (0.0, 0.0, 2.0), (0.1, 0.2, 0.3), (0.0, 0.0, 2.0)
+    ) == pytest.approx((0.1, 2.2, 0.3))

@@ -35,22 +35,30 @@ LEVEL = 5e-6 / TYRE.geometry.length  # [rad] at which one end is 5 um lower
 def test_level_wheel_has_crests_in_the_middle_and_at_both_ends(tilt):
     *crests, lower = crowned(TYRE, wheel(tilt), AXLE)
     assert [crest.pose.position for crest in crests] == [
-        pytest.approx((0.0, 0.0, z)) for z in (-0.024, 0.0, 0.024)]
+        pytest.approx((0.0, 0.0, z)) for z in (-0.024, 0.0, 0.024)
+    ]
     assert {crest.geometry for crest in crests} == {Cylinder(TYRE.geometry.radius, 0.002)}
     shoulders = lower.geometry
     assert 0.095 < shoulders.radius < 0.099
     assert shoulders.length == TYRE.geometry.length
 
 
-@pytest.mark.parametrize(('collision', 'link', 'joint'), [
-    (TYRE, wheel(1.01 * LEVEL), AXLE),  # tilted: one edge touches
-    (TYRE, wheel(-1.01 * LEVEL), AXLE),
-    (TYRE, wheel(), None),
-    (TYRE, wheel(), replace(AXLE, type=FIXED)),
-    (TYRE, wheel(), replace(AXLE, axis=(1.0, 0.0, 0.0))),  # the axis is not that of the cylinder
-    (TYRE, LinkSpec('turntable'), AXLE),  # a turntable
-    (Collision('box', Box((1.0, 1.0, 1.0))), wheel(), AXLE),
-])
+@pytest.mark.parametrize(
+    ('collision', 'link', 'joint'),
+    [
+        (TYRE, wheel(1.01 * LEVEL), AXLE),  # tilted: one edge touches
+        (TYRE, wheel(-1.01 * LEVEL), AXLE),
+        (TYRE, wheel(), None),
+        (TYRE, wheel(), replace(AXLE, type=FIXED)),
+        (
+            TYRE,
+            wheel(),
+            replace(AXLE, axis=(1.0, 0.0, 0.0)),
+        ),  # the axis is not that of the cylinder
+        (TYRE, LinkSpec('turntable'), AXLE),  # a turntable
+        (Collision('box', Box((1.0, 1.0, 1.0))), wheel(), AXLE),
+    ],
+)
 def test_other_shape_than_a_level_wheel_is_unchanged(collision, link, joint):
     assert crowned(collision, link, joint) == (collision,)
 
@@ -75,8 +83,10 @@ def test_shoulders_are_as_low_as_needed_for_no_contact_of_theirs(length):
     assert 0.02 < (0.1 - lower.geometry.radius) / half_diagonal < 0.025
 
 
-@pytest.mark.parametrize(('axis', 'end'), [
-    ((0.0, 1.0, 0.0), 0.0), ((0.0, 0.995, 0.1), -0.025), ((0.0, 0.995, -0.1), 0.025)])
+@pytest.mark.parametrize(
+    ('axis', 'end'),
+    [((0.0, 1.0, 0.0), 0.0), ((0.0, 0.995, 0.1), -0.025), ((0.0, 0.995, -0.1), 0.025)],
+)
 def test_a_lying_cylinder_touches_the_floor_with_its_lower_end_or_all_of_its_length(axis, end):
     assert touching_end(TYRE.geometry, axis) == end
 
@@ -84,8 +94,16 @@ def test_a_lying_cylinder_touches_the_floor_with_its_lower_end_or_all_of_its_len
 GROUND, PLATE = (Collision('c', shape) for shape in (Plane((0.0, 0.0, 1.0)), Box((1.0, 1.0, 0.1))))
 
 
-@pytest.mark.parametrize(('shapes', 'fixed', 'expected'), [
-    ((GROUND,), True, True), ((GROUND, GROUND), True, True), ((GROUND,), False, False),
-    ((GROUND, PLATE), True, False), ((PLATE,), True, False), ((), True, False)])
+@pytest.mark.parametrize(
+    ('shapes', 'fixed', 'expected'),
+    [
+        ((GROUND,), True, True),
+        ((GROUND, GROUND), True, True),
+        ((GROUND,), False, False),
+        ((GROUND, PLATE), True, False),
+        ((PLATE,), True, False),
+        ((), True, False),
+    ],
+)
 def test_a_floor_is_fixed_and_made_of_planes_only(shapes, fixed, expected):
     assert is_floor(Tree([LinkSpec('l', collisions=shapes)], [None], fixed)) == expected

@@ -17,21 +17,27 @@ def iterations_after(*motors, looks=LOOKS):
     return set_counts
 
 
-@pytest.mark.parametrize('motor', [
-    (0.9, 1.0, 0.5, 1.0),  # misses its target by 10 %
-    (-0.02, 0.0, 0.5, 1.0),  # the target is zero
-    (1e-3, 0.0, 0.5, 1.0),  # creeps at target zero
-])
+@pytest.mark.parametrize(
+    'motor',
+    [
+        (0.9, 1.0, 0.5, 1.0),  # misses its target by 10 %
+        (-0.02, 0.0, 0.5, 1.0),  # the target is zero
+        (1e-3, 0.0, 0.5, 1.0),  # creeps at target zero
+    ],
+)
 def test_motor_that_misses_its_target_raises_the_iterations(motor):
     assert iterations_after(motor) == [11, 44, 176]
 
 
-@pytest.mark.parametrize('motor', [
-    (0.99, 1.0, 0.5, 1.0),  # within the tolerance
-    (0.1, 1.0, -1.0, 1.0),  # saturated
-    (1e-3, 1e-3, 0.5, 1.0),
-    (5e-5, 0.0, 0.5, 1.0),
-])
+@pytest.mark.parametrize(
+    'motor',
+    [
+        (0.99, 1.0, 0.5, 1.0),  # within the tolerance
+        (0.1, 1.0, -1.0, 1.0),  # saturated
+        (1e-3, 1e-3, 0.5, 1.0),
+        (5e-5, 0.0, 0.5, 1.0),
+    ],
+)
 def test_saturated_motor_does_not_raise_the_iterations(motor):
     assert iterations_after(motor) == [11]
 
@@ -104,11 +110,16 @@ def settled(errors, looks=200):
     return set_counts
 
 
-@pytest.mark.parametrize(('errors', 'expected'), [
-    ({11: 0.039}, [11]), ({11: 0.041, 44: 0.0145}, [11, 44]),  # 4 %
-    ({11: 0.041, 44: 0.0155, 176: 0.0155}, [11, 44, 176]),  # 1.5 %
-    ({11: 0.1, 44: 0.0095}, [11, 44]), ({11: 0.03, 44: 0.0085}, [11]),
-])
+@pytest.mark.parametrize(
+    ('errors', 'expected'),
+    [
+        ({11: 0.039}, [11]),
+        ({11: 0.041, 44: 0.0145}, [11, 44]),  # 4 %
+        ({11: 0.041, 44: 0.0155, 176: 0.0155}, [11, 44, 176]),  # 1.5 %
+        ({11: 0.1, 44: 0.0095}, [11, 44]),
+        ({11: 0.03, 44: 0.0085}, [11]),
+    ],
+)
 def test_iterations_are_raised_above_4_and_15_and_lowered_below_09_percent(errors, expected):
     assert settled(errors) == expected
 
@@ -121,12 +132,18 @@ def test_iterations_are_lowered_within_09_percent():
     assert set_counts[-1] == 11
 
 
-@pytest.mark.parametrize(('velocity', 'target', 'is_missed'), [
-    # Targets below 0.05 rad/s count as 0.05 rad/s, and 0 as 0.0025 rad/s.
-    (0.02 - 0.039 * 0.05, 0.02, False), (0.02 - 0.041 * 0.05, 0.02, True),
-    (-0.02 + 0.041 * 0.05, -0.02, True), (0.1 - 0.039 * 0.1, 0.1, False),
-    (0.039 * 0.0025, 0.0, False), (-0.041 * 0.0025, 0.0, True),
-])
+@pytest.mark.parametrize(
+    ('velocity', 'target', 'is_missed'),
+    [
+        # Targets below 0.05 rad/s count as 0.05 rad/s, and 0 as 0.0025 rad/s.
+        (0.02 - 0.039 * 0.05, 0.02, False),
+        (0.02 - 0.041 * 0.05, 0.02, True),
+        (-0.02 + 0.041 * 0.05, -0.02, True),
+        (0.1 - 0.039 * 0.1, 0.1, False),
+        (0.039 * 0.0025, 0.0, False),
+        (-0.041 * 0.0025, 0.0, True),
+    ],
+)
 def test_errors_are_relative_to_the_target(velocity, target, is_missed):
     assert (len(iterations_after((velocity, target, 0.1, 1.0))) > 1) == is_missed
 
@@ -166,7 +183,8 @@ def waits(effort, set_counts, tries, target=1.0):
     while len(found) < tries:
         before = set_counts[-1]
         needed = changed_after(
-            effort, set_counts, (0.9 * target if before < 44 else target, target, 0.1, 1.0))
+            effort, set_counts, (0.9 * target if before < 44 else target, target, 0.1, 1.0)
+        )
         assert set_counts[-1] in (11, 44)
         if before == 44:
             found.append(needed)

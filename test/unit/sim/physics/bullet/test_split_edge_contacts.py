@@ -35,16 +35,22 @@ QUARTER = math.pi / 2.0
 BOX = Collision('box', Box((0.5, 0.3, 0.1)), Pose((0.1, 0.0, 0.2)))
 MASS = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
 BODY = LinkSpec('body', Pose((0.0, 0.0, 0.2)), MASS, (BOX, Collision('skid', Sphere(0.05))))
-WHEEL = LinkSpec('wheel', Pose((0.0, 0.2, 0.1), from_rpy(QUARTER, 0.0, 0.0)), MASS,
-                 (Collision('tyre', Cylinder(0.1, 0.05)),))
+WHEEL = LinkSpec(
+    'wheel',
+    Pose((0.0, 0.2, 0.1), from_rpy(QUARTER, 0.0, 0.0)),
+    MASS,
+    (Collision('tyre', Cylinder(0.1, 0.05)),),
+)
 JOINT = JointSpec('axle', REVOLUTE, 'body', 'wheel')
 
 
 def corners(collision):
     """Return the eight corners of a box in its parent frame [m]."""
     x, y, z = collision.geometry.size
-    return [compose(collision.pose, Pose((i * x, j * y, k * z))).position
-            for i, j, k in product((-0.5, 0.5), repeat=3)]
+    return [
+        compose(collision.pose, Pose((i * x, j * y, k * z))).position
+        for i, j, k in product((-0.5, 0.5), repeat=3)
+    ]
 
 
 def lowest_side(collision):
@@ -52,9 +58,16 @@ def lowest_side(collision):
     return min(corners(collision), key=lambda corner: corner[2])[1]
 
 
-@pytest.mark.parametrize('turn', [
-    (0.0, 0.0, 0.0), (0.0, 0.0, QUARTER), (QUARTER, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4),
-])
+@pytest.mark.parametrize(
+    'turn',
+    [
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, QUARTER),
+        (QUARTER, 0.0, 0.0),
+        (0.0, 0.3, 0.0),
+        (0.0, 0.0, 0.4),
+    ],
+)
 def test_box_is_doubled_and_each_copy_is_lowest_on_its_side(turn):
     box = Collision('box', Box((0.5, 0.3, 0.1)), Pose((0.2, 0.0, 0.1), from_rpy(*turn)))
     both = split_edges([box], AXLE, UP)
@@ -66,7 +79,8 @@ def test_box_is_doubled_and_each_copy_is_lowest_on_its_side(turn):
 
 def test_copies_in_an_upside_down_frame_are_highest_on_their_side():
     for lower, upper in zip(
-            split_edges([BOX], AXLE, DOWN), split_edges([BOX], AXLE, UP), strict=True):
+        split_edges([BOX], AXLE, DOWN), split_edges([BOX], AXLE, UP), strict=True
+    ):
         assert lowest_side(lower) == pytest.approx(-lowest_side(upper), abs=1e-4)
 
 
@@ -108,8 +122,9 @@ def test_edges_are_split_about_the_axle_and_the_vertical_in_the_frame_of_the_bod
     body = replace(BODY, pose=Pose((0.0, 0.0, 0.2), from_rpy(roll, 0.0, 0.0)))
     (group,) = body_groups(Tree([body, WHEEL], [None, JOINT], fixed_base=False))
     side = math.cos(roll)  # where the axle, the world's -y axis here, and the vertical point
-    for one, other in zip(group, split_edges(body.collisions, (0.0, -side, 0.0), (0.0, 0.0, side)),
-                          strict=True):
+    for one, other in zip(
+        group, split_edges(body.collisions, (0.0, -side, 0.0), (0.0, 0.0, side)), strict=True
+    ):
         assert one.pose.orientation == pytest.approx(other.pose.orientation, abs=1e-12)
 
 
@@ -119,12 +134,21 @@ def test_body_with_a_wheel_as_thin_as_a_crest_has_split_edge_contacts():
     assert [kinds(group) for group in body_groups(tree)] == [[Box, Box, Sphere]]
 
 
-@pytest.mark.parametrize('tree', [
-    Tree([BODY], [None], fixed_base=False),
-    Tree([BODY, WHEEL], [None, JOINT], fixed_base=True),
-    Tree([BODY, LinkSpec('arm', IDENTITY, MASS), WHEEL],
-         [None, JointSpec('elbow', REVOLUTE, 'body', 'arm'),
-          JointSpec('axle', REVOLUTE, 'arm', 'wheel')], fixed_base=False),
-])
+@pytest.mark.parametrize(
+    'tree',
+    [
+        Tree([BODY], [None], fixed_base=False),
+        Tree([BODY, WHEEL], [None, JOINT], fixed_base=True),
+        Tree(
+            [BODY, LinkSpec('arm', IDENTITY, MASS), WHEEL],
+            [
+                None,
+                JointSpec('elbow', REVOLUTE, 'body', 'arm'),
+                JointSpec('axle', REVOLUTE, 'arm', 'wheel'),
+            ],
+            fixed_base=False,
+        ),
+    ],
+)
 def test_body_without_a_wheel_is_unchanged(tree):
     assert body_groups(tree) == [BODY.collisions]

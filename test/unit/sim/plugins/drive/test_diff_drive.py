@@ -261,11 +261,14 @@ def test_tags_that_contradict_the_wheels_give_one_warning(caplog):
     assert lines[0].levelno == logging.WARNING
 
 
-@pytest.mark.parametrize('tags', [
-    {'wheelDiameter': '0.46', 'wheelSeparation': '1.0'},
-    {'wheelDiameter': '0.56', 'wheelSeparation': '0.8'},
-    {'wheelDiameter': '0.552', 'wheelSeparation': '0.96'},  # 1.2 times too large, both
-])
+@pytest.mark.parametrize(
+    'tags',
+    [
+        {'wheelDiameter': '0.46', 'wheelSeparation': '1.0'},
+        {'wheelDiameter': '0.56', 'wheelSeparation': '0.8'},
+        {'wheelDiameter': '0.552', 'wheelSeparation': '0.96'},  # 1.2 times too large, both
+    ],
+)
 def test_either_tag_that_contradicts_the_wheels_gives_a_warning(caplog, tags):
     make(wheel_collisions=wheel_of(0.23), **tags)
     assert 'contradict' in caplog.text

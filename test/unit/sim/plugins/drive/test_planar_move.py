@@ -16,8 +16,12 @@ def make(**tags):
 def test_all_tags_have_upstreams_defaults_and_its_warnings(caplog):
     plugin = make()
     assert plugin.params.values == {
-        'commandTopic': 'cmd_vel', 'odometryTopic': 'odom', 'odometryFrame': 'odom',
-        'robotBaseFrame': 'base_footprint', 'odometryRate': 20.0, 'cmdTimeout': -1.0,
+        'commandTopic': 'cmd_vel',
+        'odometryTopic': 'odom',
+        'odometryFrame': 'odom',
+        'robotBaseFrame': 'base_footprint',
+        'odometryRate': 20.0,
+        'cmdTimeout': -1.0,
     }
     assert plugin.namespace == ''
     assert 'PlanarMovePlugin (ns = ) missing <cmdTimeout>, defaults to -1.000000' in caplog.messages
@@ -69,7 +73,8 @@ def test_twist_is_in_the_models_own_axes():
     cos, sin = math.cos(0.7), math.sin(0.7)
     linear, angular = odometry[-1].twist
     assert linear == pytest.approx(
-        ((0.1 * cos + 0.03 * sin) / 0.051, (0.03 * cos - 0.1 * sin) / 0.051, 0.0))
+        ((0.1 * cos + 0.03 * sin) / 0.051, (0.03 * cos - 0.1 * sin) / 0.051, 0.0)
+    )
     assert angular == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 

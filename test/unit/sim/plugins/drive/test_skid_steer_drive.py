@@ -44,9 +44,15 @@ def test_missing_wheel_is_an_error(joint):
         make([name for name in JOINTS if name != joint])
 
 
-@pytest.mark.parametrize(('tag', 'value'), [
-    ('wheelDiameter', '0'), ('wheelSeparation', '-1'), ('updateRate', '1e-9'), ('torque', 'much'),
-])
+@pytest.mark.parametrize(
+    ('tag', 'value'),
+    [
+        ('wheelDiameter', '0'),
+        ('wheelSeparation', '-1'),
+        ('updateRate', '1e-9'),
+        ('torque', 'much'),
+    ],
+)
 def test_invalid_tag_is_rejected(tag, value):
     with pytest.raises(PluginError, match=tag):
         make(**{tag: value})

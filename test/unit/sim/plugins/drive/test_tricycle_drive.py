@@ -104,8 +104,7 @@ def test_encoder_odometry_has_the_yaw_sign_and_twist_frame_of_upstream():
     assert twist.linear[2] == 0.0
     yaw = 2.0 * math.asin(pose.orientation[2])
     assert yaw == pytest.approx(-0.4, rel=2e-2)
-    assert twist.linear[:2] == pytest.approx(
-        (-0.4 * math.cos(yaw), -0.4 * math.sin(yaw)), rel=2e-2)
+    assert twist.linear[:2] == pytest.approx((-0.4 * math.cos(yaw), -0.4 * math.sin(yaw)), rel=2e-2)
 
 
 def test_joint_states_are_steering_driven_left_right_with_velocities_and_efforts():

@@ -13,8 +13,11 @@ from rosbots_description.sim.plugins.force.wheel_slip import WheelSlip
 
 
 def wheel(name='left_link', **numbers):
-    numbers = {'slip_compliance_lateral': '0.5', 'slip_compliance_longitudinal': '0.25',
-               'wheel_normal_force': '50'} | numbers
+    numbers = {
+        'slip_compliance_lateral': '0.5',
+        'slip_compliance_longitudinal': '0.25',
+        'wheel_normal_force': '50',
+    } | numbers
     children = tuple(Element(tag, text) for tag, text in numbers.items() if text is not None)
     return Element('wheel', '', {'link_name': name}, children)
 
@@ -32,7 +35,8 @@ def test_slip_compliance_is_proportional_to_rim_speed_over_normal_force():
         run(plugin, 1)
         rim = abs(speed) * 0.1
         assert plugin.world.engine.slips == {
-            'left_link': pytest.approx((rim / 50 * 0.5, rim / 50 * 0.25))}
+            'left_link': pytest.approx((rim / 50 * 0.5, rim / 50 * 0.25))
+        }
 
 
 def test_given_radius_is_used_and_negative_compliance_is_zero():
@@ -42,12 +46,15 @@ def test_given_radius_is_used_and_negative_compliance_is_zero():
     assert plugin.world.engine.slips['left_link'] == pytest.approx((0.0, 0.2 / 50 * 0.25))
 
 
-@pytest.mark.parametrize(('bad', 'told'), [
-    (wheel('nowhere'), 'is no link'),
-    (wheel('base'), 'no joint turns this link'),
-    (wheel(wheel_normal_force=None), '<wheel_normal_force> must be above 0'),
-    (wheel(slip_compliance_lateral='lots'), 'takes a finite number'),
-])
+@pytest.mark.parametrize(
+    ('bad', 'told'),
+    [
+        (wheel('nowhere'), 'is no link'),
+        (wheel('base'), 'no joint turns this link'),
+        (wheel(wheel_normal_force=None), '<wheel_normal_force> must be above 0'),
+        (wheel(slip_compliance_lateral='lots'), 'takes a finite number'),
+    ],
+)
 def test_invalid_wheel_is_left_out_with_an_error(bad, told, caplog):
     plugin = load(bad, wheel('right_link'))
     assert told in caplog.text
@@ -62,10 +69,15 @@ def test_wheel_whose_axle_is_no_principal_axis_is_left_out(caplog):
     assert 'no principal axis' in caplog.text
 
 
-@pytest.mark.parametrize(('given', 'used'), [
-    (None, 'robot/wheel_slip'), ('', 'robot/wheel_slip'), ('/', 'robot/wheel_slip'),
-    ('rear', 'robot/rear'),
-])
+@pytest.mark.parametrize(
+    ('given', 'used'),
+    [
+        (None, 'robot/wheel_slip'),
+        ('', 'robot/wheel_slip'),
+        ('/', 'robot/wheel_slip'),
+        ('rear', 'robot/rear'),
+    ],
+)
 def test_namespace_is_within_that_of_the_model(given, used):
     assert load(wheel(), namespace=given).namespace == used
 
@@ -77,10 +89,12 @@ def test_compliances_change_for_all_wheels_unless_negative():
 
 
 def test_dynamic_reconfigure_sets_the_compliances(monkeypatch):
-    monkeypatch.setattr(wheel_slip.PluginReconfigure, '__init__',
-                        lambda self, *_: setattr(self, 'mutex', threading.Lock()))
+    monkeypatch.setattr(
+        wheel_slip.PluginReconfigure,
+        '__init__',
+        lambda self, *_: setattr(self, 'mutex', threading.Lock()),
+    )
     plugin = load(wheel())
     server = wheel_slip.SlipReconfigure(plugin, lambda command: command())
-    server._reconfigure(
-        Config({wheel_slip.LATERAL: 3.0, wheel_slip.LONGITUDINAL: -1.0}), 0)
+    server._reconfigure(Config({wheel_slip.LATERAL: 3.0, wheel_slip.LONGITUDINAL: -1.0}), 0)
     assert (plugin.wheels[0].lateral, plugin.wheels[0].longitudinal) == (3.0, 0.25)

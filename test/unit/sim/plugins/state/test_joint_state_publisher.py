@@ -24,10 +24,16 @@ def test_joints_are_in_the_order_of_the_tag_with_positions_and_velocities():
     assert (velocities, efforts) == ((-1.0, 2.0), ())
 
 
-@pytest.mark.parametrize(('rate', 'steps'), [
-    ('20', [51, 101, 151, 201]), ('30', [34, 67, 100, 134]), ('0', [1, 2, 3, 4]),
-    ('-5', [1, 2, 3, 4]), (None, [11, 21, 31, 41]),
-])
+@pytest.mark.parametrize(
+    ('rate', 'steps'),
+    [
+        ('20', [51, 101, 151, 201]),
+        ('30', [34, 67, 100, 134]),
+        ('0', [1, 2, 3, 4]),
+        ('-5', [1, 2, 3, 4]),
+        (None, [11, 21, 31, 41]),
+    ],
+)
 def test_the_mean_rate_is_exact_and_the_first_reading_a_step_late(rate, steps):
     plugin, found = make(jointName='left', updateRate=rate), []
     plugin.joint_states.connect(lambda _: found.append(plugin.world.clock.steps))
@@ -58,7 +64,8 @@ def test_unknown_joint_is_reported_and_left_out(caplog):
     plugin = make(jointName='left,nope', updateRate='0')
     assert caplog.messages == [
         f"{PREFIX}Joint nope does not exist! It is left out: model 'robot' has no joint 'nope'; "
-        'its joints: left, right']
+        'its joints: left, right'
+    ]
     readings = collect(plugin.joint_states)
     run(plugin, 1)
     assert readings[0].names == ('left',)

@@ -41,22 +41,30 @@ def test_defaults_are_upstreams_and_logged_at_debug_level(caplog):
     caplog.set_level(logging.INFO)
     plugin = make()
     assert plugin.params.values == {
-        'bodyName': 'base', 'topicName': 'gt', 'frameName': 'world', 'xyzOffset': '0 0 0',
-        'rpyOffset': '0 0 0', 'gaussianNoise': 0.0, 'updateRate': 0.0,
+        'bodyName': 'base',
+        'topicName': 'gt',
+        'frameName': 'world',
+        'xyzOffset': '0 0 0',
+        'rpyOffset': '0 0 0',
+        'gaussianNoise': 0.0,
+        'updateRate': 0.0,
     }
     assert plugin.namespace == ''
     assert not caplog.messages
 
 
-@pytest.mark.parametrize(('tags', 'sentence'), [
-    ({'bodyName': None}, 'missing <bodyName>, cannot proceed'),
-    ({'topicName': None}, 'missing <topicName>, cannot proceed'),
-    ({'bodyName': 'arm'}, "bodyName: arm does not exist: model 'robot' has no link 'arm'"),
-    ({'xyzOffset': '1 2'}, "<xyzOffset> is '1 2'; it takes three numbers"),
-    ({'rpyOffset': '0 0 nan'}, "<rpyOffset> is 'nan'; it takes a finite number"),
-    ({'gaussianNoise': 'inf'}, "<gaussianNoise> is 'inf'; it takes a finite number"),
-    ({'updateRate': '1e-9'}, '<updateRate> is 1e-09 Hz; it must be at least'),
-])
+@pytest.mark.parametrize(
+    ('tags', 'sentence'),
+    [
+        ({'bodyName': None}, 'missing <bodyName>, cannot proceed'),
+        ({'topicName': None}, 'missing <topicName>, cannot proceed'),
+        ({'bodyName': 'arm'}, "bodyName: arm does not exist: model 'robot' has no link 'arm'"),
+        ({'xyzOffset': '1 2'}, "<xyzOffset> is '1 2'; it takes three numbers"),
+        ({'rpyOffset': '0 0 nan'}, "<rpyOffset> is 'nan'; it takes a finite number"),
+        ({'gaussianNoise': 'inf'}, "<gaussianNoise> is 'inf'; it takes a finite number"),
+        ({'updateRate': '1e-9'}, '<updateRate> is 1e-09 Hz; it must be at least'),
+    ],
+)
 def test_invalid_tags_are_rejected_with_a_message(tags, sentence):
     with pytest.raises(PluginError) as raised:
         make(**tags)
@@ -66,16 +74,20 @@ def test_invalid_tags_are_rejected_with_a_message(tags, sentence):
 def test_old_names_of_the_offsets_are_reported_as_unknown(caplog):
     make(xyzOffsets='1 2 3')
     assert caplog.messages == [
-        'gazebo_ros_p3d plugin: not read by this plugin: <xyzOffsets> (the offset is <xyzOffset>)']
+        'gazebo_ros_p3d plugin: not read by this plugin: <xyzOffsets> (the offset is <xyzOffset>)'
+    ]
 
 
-@pytest.mark.parametrize(('rate', 'steps'), [
-    ('50', [1, 21, 41, 61, 81]),
-    ('30', [1, 35, 69, 103, 137]),  # recorded: 0.034 s
-    ('0', [1, 2, 3, 4, 5]),
-    ('-1', [1, 2, 3, 4, 5]),
-    ('1e6', [1, 2, 3, 4, 5]),
-])
+@pytest.mark.parametrize(
+    ('rate', 'steps'),
+    [
+        ('50', [1, 21, 41, 61, 81]),
+        ('30', [1, 35, 69, 103, 137]),  # recorded: 0.034 s
+        ('0', [1, 2, 3, 4, 5]),
+        ('-1', [1, 2, 3, 4, 5]),
+        ('1e6', [1, 2, 3, 4, 5]),
+    ],
+)
 def test_first_reading_is_immediate_and_then_one_per_started_period(rate, steps):
     plugin = make(updateRate=rate)
     run(plugin, 100)  # without readers
@@ -106,7 +118,8 @@ def test_names_of_the_world_frame_are_upstreams(frame):
 def test_unknown_frame_is_an_error_and_gives_no_readings(caplog):
     plugin = make(frameName='odom')
     assert caplog.messages[0].startswith(
-        'gazebo_ros_p3d plugin: frameName: odom does not exist, will not publish pose: ')
+        'gazebo_ros_p3d plugin: frameName: odom does not exist, will not publish pose: '
+    )
     assert not plugin.outputs
 
 
@@ -120,8 +133,10 @@ def test_offsets_are_in_the_axes_of_the_frame():
 
 def test_frame_of_another_link_is_applied_as_upstream(monkeypatch):
     plugin = make(frameName='left_link')
-    body, frame = (TILTED, MOVING), (Pose((0.5, 0.0, 0.0), from_rpy(0.0, 0.2, 1.0)),
-                                     Twist((0.0, 1.0, 0.0), (0.0, 0.0, 0.1)))
+    body, frame = (
+        (TILTED, MOVING),
+        (Pose((0.5, 0.0, 0.0), from_rpy(0.0, 0.2, 1.0)), Twist((0.0, 1.0, 0.0), (0.0, 0.0, 0.1))),
+    )
     states = {'base': body, 'left_link': frame}
     monkeypatch.setattr(plugin.world.engine, 'link_state', lambda _, name: states[name])
     pose, twist = told(plugin)
