@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .core import (
+        Fault,
+        Faults,
         ModelError,
         NotFoundError,
         PluginError,
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    'Fault',
+    'Faults',
     'FrameTransform',
     'Joint',
     'JointStates',

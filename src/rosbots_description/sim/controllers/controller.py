@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..core import NANOSECONDS
+from ..core import NANOSECONDS, FaultPlace
 from ..runtime import Output
 from .errors import ControllerError
 from .hardware import JointHandle, SimulatedRobot
@@ -72,6 +72,11 @@ class Controller:
     def model(self) -> 'Model':
         """Return the robot."""
         return self.robot.model
+
+    @property
+    def place(self) -> FaultPlace:
+        """Return where this is, for its faults."""
+        return {'model': self.model.name, 'element': f"controller '{self.name}'"}
 
     def load(self) -> None:
         """Read the parameters and find the joints.

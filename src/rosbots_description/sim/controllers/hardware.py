@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from ..core import NotFoundError, PluginError
+from ..core import Fault, NotFoundError, PluginError, report
 from ..description import ControlledJoint, RobotControl, Transmission
 from .angles import position_error
 from .errors import ControllerError, ResourceError
@@ -30,8 +30,6 @@ from .pid import Pid
 
 if TYPE_CHECKING:
     from ..runtime import Joint, Model
-
-logger = logging.getLogger(__name__)
 
 STATE = 'hardware_interface::JointStateInterface'
 EFFORT = 'hardware_interface::EffortJointInterface'
@@ -189,7 +187,7 @@ class SimulatedRobot:
         self.pids: dict[str, Pid] = {}
         self._params = params
         for fault in control.faults:
-            logger.error('%s', fault)
+            report(Fault(fault, logging.ERROR))
         handles = filter(None, map(self._handle_of, control.transmissions))
         self.joints = {handle.name: handle for handle in sorted(handles, key=lambda h: h.name)}
         self._handles = tuple(self.joints.values())
@@ -254,24 +252,21 @@ class SimulatedRobot:
         """Return the joint of a transmission; None, with a warning, if it cannot be simulated."""
         name = transmission.name
         if len(transmission.joints) > 1:
-            logger.warning(
-                'Transmission %s has more than one joint. Currently the default robot hardware '
-                'simulation  interface only supports one. %s is not simulated: its joints (%s) '
-                'are not controlled',
-                name,
-                transmission.type,
-                ', '.join(transmission.joints),
+            what = (
+                f'Transmission {name} has more than one joint. Currently the default robot '
+                f'hardware simulation  interface only supports one. {transmission.type} is not '
+                f'simulated: its joints ({", ".join(transmission.joints)}) are not controlled'
             )
+            report(Fault(what))
             return None
         ((joint_name, interfaces),) = transmission.joints.items()
         if len(interfaces) > 1:
-            logger.warning(
-                'Joint %s of transmission %s specifies multiple hardware interfaces. Currently the '
-                'default robot hardware simulation interface only supports one. Using the first '
-                'entry',
-                joint_name,
-                name,
+            what = (
+                f'Joint {joint_name} of transmission {name} specifies multiple hardware '
+                'interfaces. Currently the default robot hardware simulation interface only '
+                'supports one. Using the first entry'
             )
+            report(Fault(what))
         written = interfaces[0]
         classes = _HANDLES.get(written.removeprefix(_PREFIX))
         if classes is None:
@@ -280,12 +275,11 @@ class SimulatedRobot:
                 f'interfaces for {joint_name}'
             )
         if not written.startswith(_PREFIX):
-            logger.warning(
-                "Deprecated syntax, please prepend 'hardware_interface/' to '%s' within the "
-                "<hardwareInterface> tag in joint '%s'.",
-                written,
-                joint_name,
+            what = (
+                f"Deprecated syntax, please prepend 'hardware_interface/' to '{written}' within "
+                f"the <hardwareInterface> tag in joint '{joint_name}'."
             )
+            report(Fault(what))
         try:
             joint = self.model.joint(joint_name)
         except NotFoundError:
@@ -306,7 +300,7 @@ class SimulatedRobot:
         try:
             pid = Pid.from_parameters(self._params.section(path))
         except ControllerError as error:
-            logger.error('%s', error)
+            report(Fault(str(error), logging.ERROR))
             return plain(joint, described, limits)
         handle = forced(joint, described, limits)
         handle.pid = self.pids[path] = pid  # type: ignore[attr-defined]
@@ -325,11 +319,8 @@ class SimulatedRobot:
             if described.mimic is not None and is_free:
                 leader = joints.get(described.mimic.joint)
                 if leader is None or leader is joints[name]:
-                    logger.error(
-                        "joint '%s' mimics '%s', which %s; it is passive",
-                        name,
-                        described.mimic.joint,
-                        'is itself' if leader is not None else 'the model does not have',
-                    )
+                    why = 'is itself' if leader is not None else 'the model does not have'
+                    what = f"joint '{name}' mimics '{described.mimic.joint}', which {why}"
+                    report(Fault(f'{what}; it is passive', logging.ERROR))
                 else:
                     yield MimicJoint(joints[name], leader, described)

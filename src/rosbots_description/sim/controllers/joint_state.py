@@ -3,13 +3,12 @@
 import logging
 from collections.abc import Mapping
 
+from ..core import Fault, report
 from ..runtime import JointStates, Output
 from .controller import Controller, RateGate
 from .errors import ControllerError
 from .hardware import STATE
 from .registry import register_controller
-
-logger = logging.getLogger(__name__)
 
 
 @register_controller('joint_state_controller/JointStateController', STATE)
@@ -59,24 +58,26 @@ class JointStateController(Controller):
         positions, velocities, efforts = zip(*rows, strict=True) if rows else ((), (), ())
         return JointStates(tuple(self._names), positions, velocities, efforts)
 
+    def _ignore(self, what: str) -> None:
+        report(Fault(f'{what}. Ignoring.', logging.ERROR))
+
     def _add_extra_joints(self) -> None:
         given = self.params.find('extra_joints')
         if given is None:
             return
         if not isinstance(given, list | tuple):
-            logger.error('Extra joints specification is not an array. Ignoring.')
+            self._ignore('Extra joints specification is not an array')
             return
         for one in given:
             if not isinstance(one, Mapping):
-                logger.error('Extra joint specification is not a struct. Ignoring.')
+                self._ignore('Extra joint specification is not a struct')
                 continue
             name = one.get('name')
             if not isinstance(name, str):
-                logger.error('Extra joint does not specify name. Ignoring.')
+                self._ignore('Extra joint does not specify name')
             elif name in self._names:
-                logger.warning(
-                    "Joint state interface already contains specified extra joint '%s'.", name
-                )
+                what = 'Joint state interface already contains specified extra joint'
+                report(Fault(f"{what} '{name}'."))
             else:
                 self._add_extra_joint(name, one)
 
@@ -85,9 +86,7 @@ class JointStateController(Controller):
         for key in ('position', 'velocity', 'effort'):
             value = given.get(key, 0.0)
             if not isinstance(value, float):
-                logger.error(
-                    "Extra joint '%s' does not specify a valid default %s. Ignoring.", name, key
-                )
+                self._ignore(f"Extra joint '{name}' does not specify a valid default {key}")
                 return
             values.append(value)
         self._names.append(name)

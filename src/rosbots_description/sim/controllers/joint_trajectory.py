@@ -6,7 +6,7 @@ Parameters, defaults, timing and errors are those of joint_trajectory_controller
 import logging
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from ..core import NANOSECONDS
+from ..core import NANOSECONDS, reporting_to
 from ..description import CONTINUOUS
 from ..runtime import Output
 from .angles import shortest
@@ -30,8 +30,6 @@ from .trajectory import (
     coefficients,
 )
 from .trajectory_splicing import points_to_come, rest_of, spliced
-
-logger = logging.getLogger(__name__)
 
 SUCCESSFUL, INVALID_GOAL, INVALID_JOINTS, PATH_TOLERANCE_VIOLATED, GOAL_TOLERANCE_VIOLATED = (
     0,
@@ -197,10 +195,12 @@ class JointTrajectoryController(Controller):
         names = goal.trajectory.joint_names
         is_complete = self._allows_partial or len(names) == len(self.joint_names)
         if self.state != RUNNING:
-            logger.error("Can't accept new action goals. Controller is not running.")
+            what = "Can't accept new action goals. Controller is not running."
+            self.world.faults.report(what, logging.ERROR, **self.place)
             followed.finish(REJECTED, INVALID_GOAL)
         elif not is_complete or not names or not set(names) <= set(self.joint_names):
-            logger.error("Joints on incoming goal don't match the controller joints.")
+            what = "Joints on incoming goal don't match the controller joints."
+            self.world.faults.report(what, logging.ERROR, **self.place)
             followed.finish(REJECTED, INVALID_JOINTS)
         else:
             self._accept(followed)
@@ -381,7 +381,8 @@ class JointTrajectoryController(Controller):
             raise ControllerError(str(error)) from None
         now = self._uptime(self._next_ns)
         start = self._uptime(trajectory.start_ns) if trajectory.start_ns else now
-        points = points_to_come(trajectory, start, now)
+        with reporting_to(self.world.faults.add, **self.place):
+            points = points_to_come(trajectory, start, now)
         own = tolerances if goal is not None else (Tolerances(),) * len(self.joints)
         replaced = [rest_of(segments, now, goal) for segments in self._segments]
         for index, name in enumerate(names):

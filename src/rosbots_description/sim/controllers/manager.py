@@ -1,10 +1,9 @@
 """Loads, starts, stops, switches and unloads the controllers of a robot, as controller_manager."""
 
-import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..core import NotFoundError, suggestion
+from ..core import NotFoundError, reporting_to, suggestion
 from ..runtime import Output
 from .controller import RUNNING, STOPPED, Controller, ControllerSpec
 from .errors import ControllerError, InterfaceError, ResourceError
@@ -13,8 +12,6 @@ from .registry import BASE_CLASS, find_type, type_names
 
 if TYPE_CHECKING:
     from ..runtime import World
-
-logger = logging.getLogger(__name__)
 
 Controllers = list[Controller]  # `ControllerManager.list` hides the built-in name
 
@@ -111,7 +108,8 @@ class ControllerManager:
         made = kind.made_by(self.world, self.robot, spec, self.namespace, parameters)
         failed = f"Initializing controller '{name}' failed"
         try:
-            made.load()
+            with reporting_to(self.world.faults.add, **made.place):
+                made.load()
         except ResourceError as error:
             raise ControllerError(
                 f"Exception thrown while initializing controller '{name}'.\n{error}",

@@ -15,8 +15,6 @@ from .errors import ControllerError
 from .parameters import ControllerParameters
 from .pid import Gains, Pid
 
-logger = logging.getLogger(__name__)
-
 
 @register('libroboticsgroup_gazebo_mimic_joint_plugin.so')
 @register('libroboticsgroup_upatras_gazebo_mimic_joint_plugin.so')
@@ -53,9 +51,8 @@ class MimicJointPlugin(ModelPlugin):
         self.offset = self.params.read('offset', 0.0)  # [rad or m]
         self.sensitiveness = self.params.read('sensitiveness', 0.0)  # [rad or m]
         limit = self._joint.spec.effort
-        self.max_effort = abs(
-            self.params.read('maxEffort', 1e9 if limit is None else limit)
-        )  # [N m or N]
+        # [N m or N]
+        self.max_effort = abs(self.params.read('maxEffort', 1e9 if limit is None else limit))
         gains = self.params.text('hasPID')
         self.gains_path = (
             '' if gains is None else (gains or f'gazebo_ros_control/pid_gains/{names[1]}')
@@ -67,7 +64,7 @@ class MimicJointPlugin(ModelPlugin):
 
         Args:
             parameters: those in the robot's namespace, nested as in YAML; the gains are at
-                `gains_path`. Without them the joint is passive, with an error in the log.
+                `gains_path`. Without them the joint is passive, which is reported as an error.
         """
         own = f'/{self.namespace}'.replace('//', '/').rstrip('/')
         try:
@@ -75,7 +72,7 @@ class MimicJointPlugin(ModelPlugin):
                 ControllerParameters(parameters, own).section(self.gains_path)
             )
         except ControllerError as error:
-            logger.error('%s', error)
+            self.world.faults.report(str(error), logging.ERROR, **self.place)
             self.pid = Pid(Gains(0.0))
 
     def restart(self) -> None:

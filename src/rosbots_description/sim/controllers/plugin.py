@@ -8,7 +8,7 @@ until the parameter server has it.
 import logging
 from collections.abc import Iterable, Mapping
 
-from ..core import NANOSECONDS, PluginError, parse_number
+from ..core import NANOSECONDS, Fault, PluginError, parse_number, report, reporting_to
 from ..description import RobotControl
 from ..plugin_registry import register
 from ..plugins import ModelPlugin
@@ -68,17 +68,14 @@ class RosControl(ModelPlugin):
         if period is None or period < 0.0:
             raise PluginError(f"<controlPeriod> is '{text}'; it takes a period in seconds")
         if period != step:
-            level, word = (
+            severity, word = (
                 (logging.ERROR, 'faster') if period < step else (logging.WARNING, 'slower')
             )
-            logger.log(
-                level,
-                'Desired controller update period (%.9f s) is %s than the gazebo '
-                'simulation period (%.9f s).',
-                period,
-                word,
-                step,
+            what = (
+                f'Desired controller update period ({period:.9f} s) is {word} than the gazebo '
+                f'simulation period ({step:.9f} s).'
             )
+            report(Fault(what, severity))
         return round(period * NANOSECONDS)
 
     def postpone(self) -> None:
@@ -110,13 +107,13 @@ class RosControl(ModelPlugin):
         described = control or self.model.spec.control
         if described is None:
             described = RobotControl()
-            logger.warning(
-                '%s: SDF has no transmissions, so that no joint is controlled; pass the '
-                "robot's URDF to configure()",
-                self._who,
-            )
+            what = f'{self._who}: SDF has no transmissions, so that no joint is controlled'
+            cure = "pass the robot's URDF to configure()"
+            self.world.faults.report(what, cure=cure, **self.place)
         own = f'/{self.namespace}'.replace('//', '/').rstrip('/')
-        robot = SimulatedRobot(self.model, described, ControllerParameters(parameters or {}, own))
+        given = ControllerParameters(parameters or {}, own)
+        with reporting_to(self.world.faults.add, **self.place):
+            robot = SimulatedRobot(self.model, described, given)
         self._failed = False
         self._manager = ControllerManager(self.world, robot, self.namespace, self._wake)
         self._begin_period()
@@ -200,7 +197,8 @@ class RosControl(ModelPlugin):
             try:
                 self.configure()
             except PluginError as error:
-                logger.critical('%s; Could not initialize robot simulation interface', error)
+                what = f'{error}; Could not initialize robot simulation interface'
+                self.world.faults.report(what, logging.CRITICAL, **self.place)
         self._set_due()
 
     def restart(self) -> None:

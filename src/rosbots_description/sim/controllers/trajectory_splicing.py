@@ -3,9 +3,9 @@
 Times are in seconds since the controller was started.
 """
 
-import logging
 from collections.abc import Sequence
 
+from ..core import Fault, report
 from .errors import ControllerError
 from .goal import Goal
 from .trajectory import (
@@ -19,8 +19,6 @@ from .trajectory import (
     joint_point,
     unwrapped,
 )
-
-logger = logging.getLogger(__name__)
 
 Segments = list[SplineSegment]  # of one joint, in the order of time
 
@@ -41,13 +39,12 @@ def points_to_come(trajectory: Trajectory, start: float, now: float) -> Sequence
         )
     starts_at_zero = past == 1 and not (trajectory.start_ns or points[0].time_from_start)
     if past and not starts_at_zero:
-        logger.warning(
-            'Dropping first %d trajectory point(s) out of %d, as they occur before the current '
-            'time.\nFirst valid point will be reached in %.3fs.',
-            past,
-            len(points),
-            start + points[past].time_from_start - now,
+        left = start + points[past].time_from_start - now
+        what = (
+            f'Dropping first {past} trajectory point(s) out of {len(points)}, as they occur before '
+            f'the current time.\nFirst valid point will be reached in {left:.3f}s.'
         )
+        report(Fault(what))
     return points[past:]
 
 

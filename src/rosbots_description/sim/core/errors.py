@@ -1,13 +1,18 @@
 """The simulator's exceptions. Each message names the location, the fault and the cure."""
 
+from .faults import FaultPlace
+
 _HEAD, _TAIL = 1200, 600  # characters shown of a long message; its cure comes last
 
 
 class SimError(Exception):
     """Any fault the simulator reports to its user; `str()` is the message to show.
 
-    The message is one printable line of limited length, whatever user input it quotes.
+    The message is one printable line of limited length, whatever user input it quotes. `place`
+    says where it is, as far as that is known.
     """
+
+    place = FaultPlace()
 
     def __str__(self) -> str:
         """Return the message."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote, unquote
 
 from .errors import ModelError
+from .faults import Fault, FaultPlace
 
 if TYPE_CHECKING:
     from lxml import etree
@@ -32,7 +33,25 @@ def fault(
     element: 'etree._Element', sentence: str, kind: type[ModelError] = ModelError
 ) -> ModelError:
     """Return the error to raise about `element`: source, line and owner, then the sentence."""
-    return kind(f'{location(element)}: {sentence}')
+    error = kind(f'{location(element)}: {sentence}')
+    error.place = place(element)
+    return error
+
+
+def place(element: 'etree._Element') -> FaultPlace:
+    """Return where an element is."""
+    model = link = ''
+    for ancestor in (element, *element.iterancestors()):
+        if ancestor.tag == 'model':
+            model = ancestor.get('name', '')
+        elif ancestor.tag == 'link':
+            link = ancestor.get('name', '')
+    return {
+        'model': model,
+        'link': link,
+        'element': owner(element) or f'<{element.tag}>',
+        'line': element.sourceline or 0,  # type: ignore[typeddict-item]  # untyped in the stubs
+    }
 
 
 def location(element: 'etree._Element') -> str:
@@ -97,9 +116,14 @@ def shortened(text: str, most: int = 600) -> str:
     return ' '.join(''.join(c if c.isprintable() else ' ' for c in text).split())
 
 
-def note(notes: list[str], sentence: Callable[[], str]) -> None:
-    """Add what `sentence` returns, unless there are too many notes already."""
+def warning(element: 'etree._Element', sentence: str, cure: str = '') -> Fault:
+    """Return a warning about `element`: source, line and owner, then the sentence."""
+    return Fault(f'{location(element)}: {sentence}', cure=cure, **place(element))
+
+
+def note(notes: list[Fault], made: Callable[[], Fault]) -> None:
+    """Add what `made` returns, unless there are too many notes already."""
     if len(notes) < MAX_NOTES:
-        notes.append(sentence())
+        notes.append(made())
     elif len(notes) == MAX_NOTES:
-        notes.append('more warnings of this kind are not listed')
+        notes.append(Fault('more warnings of this kind are not listed'))

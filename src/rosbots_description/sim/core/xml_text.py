@@ -6,10 +6,9 @@ an attribute. Removing the comments and the declaration, and writing `&lt;`, mak
 well-formed; each element stays on its line.
 """
 
-import logging
 import re
 
-logger = logging.getLogger(__name__)
+from .faults import Fault, report
 
 _DECLARATION = re.compile(r'\s*<\?xml\b[^>]*\?>')
 _ENCODING = re.compile(rb'\s*<\?xml\b[^>]*?\bencoding\s*=\s*["\']([\w.:-]+)["\']')
@@ -55,13 +54,9 @@ def _decode(text: bytes, source: str) -> str:
         if declared and declared[1].lower() not in (b'utf-8', b'utf8'):
             return text.decode(declared[1].decode())
         line = text.count(b'\n', 0, error.start) + 1
-        logger.warning(
-            '%s, line %d: byte 0x%02x is not UTF-8, the text is read as Latin-1; '
-            'save the file in UTF-8',
-            source,
-            line,
-            text[error.start],
-        )
+        what = f'{source}, line {line}: byte 0x{text[error.start]:02x} is not UTF-8'
+        what += ', the text is read as Latin-1'
+        report(Fault(what, line=line, cure='save the file in UTF-8'))
         return text.decode('latin-1')
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..core import MAX_LENGTH, AbsentError, ModelError, shortened
+from ..core import MAX_LENGTH, AbsentError, Fault, ModelError, report, shortened
 from ..core.arrays import FloatArray, IntArray
 from ..description import Colour, Reflection
 from ..resources import read_file, regular_state, within
@@ -27,8 +27,6 @@ from .stl import read_stl
 
 if TYPE_CHECKING:
     from .collada import ColladaPart
-
-logger = logging.getLogger(__name__)
 
 MAX_MESH_BYTES = 120_000_000
 MAX_TRIANGLES = 3_000_000  # in the file; a binary STL of 120 MB has 2.4 million
@@ -201,7 +199,7 @@ def _parse_obj(content: bytes, path: str) -> list[MeshPart]:
         try:
             return read_file(library, MAX_LIBRARY_BYTES).decode('utf-8', 'replace')
         except ModelError as error:
-            logger.debug('%s, which %s names', error, path)
+            report(Fault(f'{error}, which {path} names', logging.DEBUG))
             return ''
 
     return [_obj_part(part) for part in read_obj(content, read_library)]
@@ -260,7 +258,7 @@ def _image_file(name: str, path: str) -> str:
     ):
         if within(place, model) and os.path.isfile(place):
             return os.path.realpath(place)
-    logger.warning("mesh file '%s' names the image '%s', which is not there", path, name)
+    report(Fault(f"mesh file '{path}' names the image '{name}', which is not there"))
     return ''
 
 
@@ -315,12 +313,12 @@ def _decimate(path: str, parts: list[MeshPart]) -> list[MeshPart]:
             replace(part, vertices=vertices, faces=faces, normals=normals, texcoords=texcoords)
         )
         widest = max(widest, cell)
-    logger.warning(
-        "mesh file '%s' has %d triangles; it is decimated to %d, on a grid of %.2g m",
-        path,
-        count,
-        sum(len(part.faces) for part in thin),
-        widest,
+    left = sum(len(part.faces) for part in thin)
+    report(
+        Fault(
+            f"mesh file '{path}' has {count} triangles; it is decimated to {left}, "
+            f'on a grid of {widest:.2g} m'
+        )
     )
     return thin
 

@@ -9,7 +9,6 @@ not depend on the load of the machine.
 
 import errno
 import hashlib
-import logging
 import os
 import pickle
 import signal
@@ -18,13 +17,11 @@ import time
 from collections.abc import Callable
 from functools import partial
 
-from ..core import HUNG_TIME, IDENTITY, ModelError, Pose, compose
+from ..core import HUNG_TIME, IDENTITY, Fault, ModelError, Pose, compose, report
 from ..description import GROUND_PLANE, ModelSpec, PhysicsSettings
 from .compiled_model import CompiledModel
 from .engine import EngineFactory, PhysicsEngine
 from .fork_server import Cancelled, ForkServer, Killed, Work
-
-logger = logging.getLogger(__name__)
 
 STEPS = 20  # enough for contacts to be found, solved and followed
 BUDGET = 0.15  # [s, processor] after which a heavy model makes no further step
@@ -117,27 +114,29 @@ class CrashSandbox:
         """Return whether the engine survived a model; False if that is unknown."""
         allowance = _allowance(model)
         try:
-            report = self._children.run(pickle.dumps((model, physics)), allowance, is_wanted)
+            outcome = self._children.run(pickle.dumps((model, physics)), allowance, is_wanted)
         except OSError as error:
-            logger.warning(
-                "model '%s' was not tested in the sandbox, since the operating system failed (%s)",
-                name,
-                error.strerror,
+            report(
+                Fault(
+                    f"model '{name}' was not tested in the sandbox, since the operating system "
+                    f'failed ({error.strerror})',
+                    model=name,
+                )
             )
             return False
         except Cancelled:
             raise ModelError(f"model '{name}' is rejected: its client has disconnected") from None
         except Killed as killed:
-            report = _exit_reason(killed.exit_code, allowance)
-        if report.startswith(_SYSTEM):
+            outcome = _exit_reason(killed.exit_code, allowance)
+        if outcome.startswith(_SYSTEM):
             raise ModelError(
                 f"model '{name}' is rejected: it could not be tested before, since the "
-                f'operating system failed ({report.removeprefix(_SYSTEM)}); fix that and spawn '
+                f'operating system failed ({outcome.removeprefix(_SYSTEM)}); fix that and spawn '
                 'the model again'
             )
-        if report != _PASSED:
+        if outcome != _PASSED:
             raise ModelError(
-                f"model '{name}' is rejected: tested in a process of its own, {report}"
+                f"model '{name}' is rejected: tested in a process of its own, {outcome}"
                 '; leave out parts of it to find the one that does it, meshes first'
             )
         return True

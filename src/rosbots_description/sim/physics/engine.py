@@ -117,8 +117,12 @@ class PhysicsEngine(Protocol):
     def placements(self) -> int:
         """How often something was added, placed or restored; else, static models do not move."""
 
+    @property
+    def advances(self) -> int:
+        """How often `step` may have moved bodies; scans read no poses until it has changed."""
+
     def step(self, steps: int) -> None:
-        """Advance physics by whole steps."""
+        """Advance physics by whole steps; what rests may sleep until something acts on it."""
 
     def enable(self, enabled: bool) -> None:
         """Enable or disable the motion of bodies; forces are lost while it is disabled."""

@@ -25,9 +25,7 @@ import time
 from collections.abc import Callable
 from typing import NoReturn
 
-from ..core import POLL_PERIOD, ProcessWatch
-
-logger = logging.getLogger(__name__)
+from ..core import POLL_PERIOD, Fault, ProcessWatch, report
 
 Work = Callable[[bytes], str]
 
@@ -133,11 +131,8 @@ class ForkServer:
             code = ended.end()
             if self._replacement is None:
                 raise ServerEndedError from None
-            logger.warning(
-                'the process %s has ended (%s); it is started again',
-                self._name,
-                f'killed by signal {-code}' if code < 0 else f'exit code {code}',
-            )
+            how = f'killed by signal {-code}' if code < 0 else f'exit code {code}'
+            report(Fault(f'the process {self._name} has ended ({how}); it is started again'))
             ours, theirs = socket.socketpair(type=socket.SOCK_SEQPACKET)
             with theirs:
                 ours.send(pickle.dumps((self._replacement, self._name)))

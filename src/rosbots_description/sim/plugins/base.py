@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..core import (
     NANOSECONDS,
+    Fault,
+    FaultPlace,
     NotFoundError,
     PluginError,
     Pose,
@@ -16,6 +18,7 @@ from ..core import (
     conjugate,
     from_rpy,
     multiply,
+    report,
     rotate,
     subtract,
     to_rpy,
@@ -26,8 +29,6 @@ from .parameters import Missing, Params, says_default
 
 if TYPE_CHECKING:
     from ..runtime import Joint, Link, Model, World
-
-logger = logging.getLogger(__name__)
 
 
 class ModelPlugin(Plugin):
@@ -59,6 +60,12 @@ class ModelPlugin(Plugin):
         self._all_outputs: list[Output[Any]] = []
         self.is_read = False
 
+    @property
+    def place(self) -> FaultPlace:
+        """Return where this is, for its faults."""
+        element = f"plugin '{self.name}'"
+        return {'model': self.model.name, 'element': element, 'line': self.spec.element.line}
+
     def find_namespace(self, given: str | None) -> str:
         """Return the namespace of its topics, given the text of <robotNamespace> (None: absent)."""
         fallback = self.absent_namespace if given is None else self.empty_namespace
@@ -70,16 +77,13 @@ class ModelPlugin(Plugin):
         return re.sub('/+', '/', topic if topic.startswith('/') else f'/{self.namespace}/{topic}')
 
     def start(self) -> None:
-        """Load and start; log the tags that were not read."""
+        """Load and start; report the tags that were not read."""
         self.load()
         unread = self.params.unread()
         if unread:
-            logger.warning(
-                '%snot read by this plugin: %s%s',
-                self.log_prefix,
-                ', '.join(f'<{tag}>' for tag in unread),
-                ''.join(hint for tag, hint in self.hints.items() if tag in unread),
-            )
+            tags = ', '.join(f'<{tag}>' for tag in unread)
+            hints = ''.join(hint for tag, hint in self.hints.items() if tag in unread)
+            report(Fault(f'{self.log_prefix}not read by this plugin: {tags}{hints}'))
         self.restart()
 
     def load(self) -> None:

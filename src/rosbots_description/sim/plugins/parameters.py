@@ -5,10 +5,8 @@ import re
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..core import MIN_UPDATE_RATE, PluginError, Vector, parse_number
+from ..core import MIN_UPDATE_RATE, Fault, PluginError, Vector, parse_number, report
 from ..description import Element
-
-logger = logging.getLogger(__name__)
 
 Value = TypeVar('Value', str, float, bool)
 Missing = Callable[[str, str | float | bool], str]  # a tag and its default -> a warning
@@ -37,7 +35,7 @@ class Params:
         self.values: dict[str, str | float | bool] = {}
 
     def text(self, tag: str) -> str | None:
-        """Return the tag's text without surrounding blanks, or None; logs nothing."""
+        """Return the tag's text without surrounding blanks, or None; reports nothing."""
         self._read.add(tag)
         child = self._element.child(tag)
         return None if child is None else child.text.strip()
@@ -53,7 +51,8 @@ class Params:
         text = self.text(tag)
         value = default
         if text is None:
-            logger.log(self._level, '%s%s', self.prefix, self._missing(tag, shown or default))
+            what = f'{self.prefix}{self._missing(tag, shown or default)}'
+            report(Fault(what, self._level))
         elif isinstance(default, bool):
             value = self._boolean(tag, text, default)
         elif isinstance(default, float):
@@ -132,13 +131,8 @@ class Params:
     def _boolean(self, tag: str, text: str, default: bool) -> bool:
         value = _BOOLEANS.get(text.lower())
         if value is None:
-            logger.warning(
-                "%s<%s> is '%s', which is neither true nor false; default is %s",
-                self.prefix,
-                tag,
-                text,
-                _show(default),
-            )
+            what = f"{self.prefix}<{tag}> is '{text}', which is neither true nor false"
+            report(Fault(f'{what}; default is {_show(default)}'))
             return default
         return value
 

@@ -1,10 +1,9 @@
 """Read a model from a file, an address or a text."""
 
-import logging
 import os
 from collections.abc import Iterable, Mapping
 
-from ..core import ModelError, Pose
+from ..core import Fault, ModelError, Pose, report
 from ..description import ModelSpec
 from ..formats import expand_xacro, load_sdf, load_urdf, sdf_of_include
 from ..resources import (
@@ -19,8 +18,6 @@ from ..resources import (
     read_file,
     root_tag,
 )
-
-logger = logging.getLogger(__name__)
 
 Paths = Iterable[str | os.PathLike[str]]
 Description = str | os.PathLike[str]
@@ -80,10 +77,8 @@ class Descriptions:
         """
         given = os.fspath(description)
         if arguments and not given.endswith('.xacro'):
-            logger.warning(
-                'arguments are for xacro files only; %s are ignored',
-                ', '.join(map(repr, arguments)),
-            )
+            ignored = ', '.join(map(repr, arguments))
+            report(Fault(f'arguments are for xacro files only; {ignored} are ignored'))
         if given.startswith('model://'):
             given = sdf_of_include(given)
         text: str | bytes

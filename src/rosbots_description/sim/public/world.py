@@ -13,10 +13,12 @@ from ..core import (
     NANOSECONDS,
     NotFoundError,
     Pose,
+    Receiver,
     SimError,
     Vector,
     compose,
     from_rpy,
+    reporting_to,
 )
 from ..description import ModelSpec, PhysicsSettings
 from ..formats import open_world, sdf_of_world
@@ -47,6 +49,7 @@ class World(runtime.World):
         package_path: Paths = (),
         model_path: Paths = (),
         make_engine: EngineFactory = make_engine,
+        on_fault: Receiver | None = None,
     ) -> None:
         """Open an empty world, without even a ground.
 
@@ -56,11 +59,13 @@ class World(runtime.World):
                 after the package that a description's own file lies in.
             model_path: folders to search for model:// addresses, before GAZEBO_MODEL_PATH.
             make_engine: makes the physics engine.
+            on_fault: called with each `Fault` when it is reported, on the thread that reports; by
+                default it is logged. `faults` has them all, each once.
         """
         self._closed = False
         self._run: Callable[[int], int] = super().run
         self._descriptions = Descriptions(package_path, model_path)
-        super().__init__(physics, make_engine)
+        super().__init__(physics, make_engine, on_fault)
 
     @classmethod
     def empty(
@@ -70,13 +75,18 @@ class World(runtime.World):
         package_path: Paths = (),
         model_path: Paths = (),
         make_engine: EngineFactory = make_engine,
+        on_fault: Receiver | None = None,
     ) -> Self:
         """Return Gazebo's empty world: a ground plane at z = 0, and the sun.
 
         The arguments are those of `World`.
         """
         world = cls(
-            physics, package_path=package_path, model_path=model_path, make_engine=make_engine
+            physics,
+            package_path=package_path,
+            model_path=model_path,
+            make_engine=make_engine,
+            on_fault=on_fault,
         )
         add_empty_world(world)
         return world
@@ -90,10 +100,11 @@ class World(runtime.World):
         model_path: Paths = (),
         seed: int = 0,
         make_engine: EngineFactory = make_engine,
+        on_fault: Receiver | None = None,
     ) -> Self:
         """Return the world that an SDF file describes.
 
-        A model that cannot be simulated is left out, with an error in the log.
+        A model that cannot be simulated is left out, which is an error in `faults`.
 
         Args:
             path: of the file; or the name of one along GAZEBO_RESOURCE_PATH or among our own:
@@ -102,24 +113,29 @@ class World(runtime.World):
             model_path: see `World`.
             seed: of the noise of sensors.
             make_engine: see `World`.
+            on_fault: see `World`.
         Raises:
             NotFoundError: there is no such file.
             ModelError: it is not SDF with a <world>, or a number of the world is not valid.
         """
         places = [*path_directories(os.environ.get('GAZEBO_RESOURCE_PATH', '')), str(_LIBRARY)]
         file = find_world(os.fspath(path), places)
-        world = cls(package_path=package_path, model_path=model_path, make_engine=make_engine)
+        world = cls(
+            package_path=package_path,
+            model_path=model_path,
+            make_engine=make_engine,
+            on_fault=on_fault,
+        )
         world.seed = seed
         try:
-            populate(
-                world,
-                open_world(
+            with reporting_to(world.faults.add):
+                spec = open_world(
                     file,
                     find_model=world._descriptions.find_model,
                     find_package=world._descriptions.packages(os.fspath(file)),
                     find_file=world._descriptions.find_file,
-                ),
-            )
+                )
+            populate(world, spec)
         except BaseException:
             world.close()
             raise
@@ -162,7 +178,7 @@ class World(runtime.World):
     ) -> Model:
         """Spawn a model and load its plugins.
 
-        A plugin that fails is an error in the log, and the model is spawned without it.
+        A plugin that fails is an error in `faults`, and the model is spawned without it.
 
         Args:
             model: a URDF, xacro or SDF: the path of a file, its package:// or model:// address, or
@@ -204,7 +220,8 @@ class World(runtime.World):
         Raises:
             ModelError: it cannot be read or simulated.
         """
-        return self._descriptions.read(model, name, arguments or {})
+        with reporting_to(self.faults.add):
+            return self._descriptions.read(model, name, arguments or {})
 
     def available_models(self) -> list[str]:
         """Return the names of the models along `model_path` and GAZEBO_MODEL_PATH."""

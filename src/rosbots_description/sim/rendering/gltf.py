@@ -5,7 +5,6 @@ Coordinates are those of the link, z up: what shows them must not turn them to g
 
 import io
 import json
-import logging
 import math
 import struct
 from collections.abc import Iterator
@@ -16,15 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import Image
 
-from ..core import ModelError, Vector
+from ..core import Fault, ModelError, Vector, report
 from ..core.arrays import FloatArray, IntArray
 from ..description import Box, Colour, Cylinder, Material, Mesh, Plane, Reflection, Sphere, Visual
 from ..meshes import MeshPart, read_mesh
 from ..resources import read_file
 from .shapes import unit_square
 from .sunlit_meshes import UNIT_SURFACES
-
-logger = logging.getLogger(__name__)
 
 MAX_IMAGE_BYTES = 50_000_000
 _FLOAT, _UNSIGNED_INT = 5126, 5125  # component types
@@ -213,7 +210,7 @@ class _File:
             try:
                 kind, content = _browser_image(path)
             except (OSError, ValueError, ModelError, Image.DecompressionBombError) as error:
-                logger.warning('texture %s is not shown: %s', path, error)
+                report(Fault(f'texture {path} is not shown: {error}'))
                 self._images[path] = None
             else:
                 self._images[path] = len(self._image_views)

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import POLL_PERIOD, ProcessWatch
+from ..core import POLL_PERIOD, Fault, ProcessWatch, report
 from .gl import Lens, Scene, Wants
 
 logger = logging.getLogger(__name__)
@@ -238,7 +238,7 @@ class RenderProcess:
         if self._is_hung:
             ended = 'it was stopped, or hung, and was killed'
         if self._crashes < MAX_CRASHES:
-            logger.error('the render process has died (%s); restarting it', ended)
+            report(Fault(f'the render process has died ({ended}); restarting it', logging.ERROR))
             self._start()
         else:
             self._fail(
@@ -247,7 +247,7 @@ class RenderProcess:
             )
 
     def _fail(self, fault: str) -> None:
-        logger.error('%s', fault)
+        report(Fault(fault, logging.ERROR))
         self.fault = fault
         for camera in self._cameras.values():
             camera.fail(fault)

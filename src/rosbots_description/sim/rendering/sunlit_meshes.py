@@ -7,7 +7,6 @@ body and camera.
 """
 
 import hashlib
-import logging
 import struct
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -15,13 +14,11 @@ from functools import cache
 
 import numpy as np
 
-from ..core import ModelError
+from ..core import Fault, ModelError, report
 from ..core.arrays import FloatArray, IntArray
 from ..description import Box, Colour, Cylinder, Material, Mesh, Sphere, Visual
 from ..meshes import read_mesh
 from ..resources import SharedFile, SharedFiles
-
-logger = logging.getLogger(__name__)
 
 RECENT = 32  # files kept a while: RViz may read one after its model was deleted
 
@@ -56,7 +53,7 @@ class SunlitMeshes:
             self._recent.append(file)
             return file
         except ModelError as error:
-            logger.warning("visual '%s' is lit from the eye: %s", visual.name, error)
+            report(Fault(f"visual '{visual.name}' is lit from the eye: {error}"))
             return None
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from ..core import AbsentError, NotFoundError, fault, shortened
+from ..core import AbsentError, NotFoundError, fault, place, shortened
 from .safe_io import read_file
 from .xml_parser import MAX_XML_BYTES, parse_xml
 
@@ -126,7 +126,9 @@ def in_models(element: etree._Element, uri: str, find_model: FindModel) -> str:
     if found is None:
         model = inner.split('/')[0]
         sentence = f"'{uri}' {not_on_model_path(find_model, repr(model))}"
-        raise MissingModel(str(fault(element, sentence)), model)
+        error = MissingModel(str(fault(element, sentence)), model)
+        error.place = place(element)
+        raise error
     return found
 
 

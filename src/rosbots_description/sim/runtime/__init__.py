@@ -8,9 +8,9 @@ from .population import describe, populate
 from .properties import collisions_named, set_friction, set_inertial
 from .saved_state import SavedState
 from .scheduler import NEVER, Hook, PreRunPublisher
-from .sensor import SensorLife
+from .sensor import SensorPart
 from .shown_world import ShownWorld
-from .world import WORLD_FRAMES, Entity, World
+from .world import WORLD_FRAMES, Entity, Listener, World
 
 __all__ = [
     'NEVER',
@@ -22,13 +22,14 @@ __all__ = [
     'Joint',
     'JointStates',
     'Link',
+    'Listener',
     'Model',
     'Odometry',
     'Output',
     'Plugin',
     'PreRunPublisher',
     'SavedState',
-    'SensorLife',
+    'SensorPart',
     'ShownWorld',
     'World',
     'add_empty_world',

@@ -22,7 +22,7 @@ from ..plugin_registry import library_name
 from .model_part import ModelPart
 from .outputs import JointStates
 from .plugin import Plugin
-from .sensor import SensorLife
+from .sensor import SensorPart
 
 
 class Link:
@@ -205,7 +205,7 @@ class Model:
             if joint.name in self.body.joints
         }
         self.plugins: dict[str, Plugin] = {}
-        self.sensors: dict[str, SensorLife] = {}
+        self.sensors: dict[str, SensorPart] = {}
         self.left_out = list(spec.left_out)  # parts that were left out, each in a few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from itertools import chain, count
 from typing import TYPE_CHECKING
 
-from ..core import SimError, shortened
+from ..core import Fault, FaultPlace, SimError, reporting_to, shortened
 from ..description import PluginSpec, SensorSpec
 from ..plugin_registry import (
     PAGE,
@@ -23,11 +23,9 @@ from .plugin import Plugin
 if TYPE_CHECKING:
     from .world import World
 
-logger = logging.getLogger(__name__)
-
 
 class PartLoader:
-    """Gives one model its plugins and sensors; what is left out is logged and listed."""
+    """Gives one model its plugins and sensors; what is left out is reported and listed."""
 
     def __init__(self, world: 'World', model: Model) -> None:
         self._world, self._model = world, model
@@ -65,8 +63,8 @@ class PartLoader:
             plugin = None if plugin_cls is None else plugin_cls(sensor, inner)
             self._start_plugin(inner, plugin, where, f'{called} ({inner.filename})', scope)
         if not (spec.plugins or sensor.measures):
-            logger.warning('%s: sensors of this type are not simulated yet; see %s', where, PAGE)
-            model.left_out.append(called)
+            what = f'{where}: sensors of this type are not simulated yet'
+            self._leave_out(called, Fault(what, cure=f'see {PAGE}', **sensor.place))
 
     def _start_plugin(
         self, spec: PluginSpec, plugin: Plugin | None, where: str, called: str, scope: str = ''
@@ -82,14 +80,14 @@ class PartLoader:
         """
         if plugin is None:
             known = library_name(spec.filename) in missing_libraries()
-            logger.log(
-                logging.WARNING if known else logging.ERROR,
-                '%s: %s; see %s',
-                where,
-                library_remark(spec.filename),
-                PAGE,
-            )
-            self._model.left_out.append(called)
+            severity = logging.WARNING if known else logging.ERROR
+            what = f'{where}: {library_remark(spec.filename)}'
+            place: FaultPlace = {
+                'model': self._model.name,
+                'element': called,
+                'line': spec.element.line,
+            }
+            self._leave_out(called, Fault(what, severity, cure=f'see {PAGE}', **place))
         elif self._start(plugin, where, called):
             plugins = self._model.plugins
             inner = f'{scope}::{plugin.name}' if scope else plugin.name
@@ -98,13 +96,18 @@ class PartLoader:
     def _start(self, part: ModelPart, where: str, called: str) -> bool:
         """Start and schedule a plugin or sensor; after an error the model is spawned without it."""
         try:
-            part.start()
+            with reporting_to(self._world.faults.add, **part.place):
+                part.start()
         except SimError as error:
-            logger.error('%s: %s; the model is spawned without it', where, error)
-            self._model.left_out.append(called)
+            what = f'{where}: {error}; the model is spawned without it'
+            self._leave_out(called, Fault(what, logging.ERROR, **part.place))
             return False
         self._world.schedule.add(part)
         return True
+
+    def _leave_out(self, called: str, fault: Fault) -> None:
+        self._model.left_out.append(called)
+        self._world.faults.add(fault)
 
 
 def free_key(taken: Collection[str], name: str, scoped_name: str) -> str:

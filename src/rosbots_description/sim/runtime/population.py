@@ -9,8 +9,6 @@ from ..description import WorldSpec
 from .world import World
 from .world_file_state import apply_state, state_of
 
-logger = logging.getLogger(__name__)
-
 # World plugins whose function the server provides anyway.
 _SERVED = (
     'libgazebo_ros_api_plugin.so',
@@ -24,7 +22,7 @@ def populate(world: World, spec: WorldSpec) -> None:
     """Add all models and lights to an empty world, and set its clock.
 
     Plugins of the world that do more than the server does anyway are named as not run. A model
-    that the world does not take is an error in the log, and the others stand.
+    that the world does not take is an error in `world.faults`, and the others stand.
     """
     world.spec = replace(spec, models=(), states=())  # the world has its own
     world.name, world.scene = spec.name, spec.scene
@@ -35,23 +33,20 @@ def populate(world: World, spec: WorldSpec) -> None:
         try:
             world.spawn(model_spec, model_spec.name, pose)
         except SimError as error:
-            logger.error("model '%s': %s; this model is left out", model_spec.name, error)
+            what = f"model '{model_spec.name}': {error}; this model is left out"
+            world.faults.report(what, logging.ERROR, model=model_spec.name)
     for state in spec.states:
         model = world.models.get(state.name)
         if model is None:
-            logger.warning(
-                "the world's <state> names a model '%s' that does not exist", shortened(state.name)
-            )
+            name = shortened(state.name)
+            world.faults.report(f"the world's <state> names a model '{name}' that does not exist")
         else:
             apply_state(model, state)
     for plugin in spec.plugins:
         if plugin.filename not in _SERVED:
-            logger.warning(
-                "world plugin '%s' (%s, line %d) is not run here",
-                shortened(plugin.name),
-                shortened(plugin.filename),
-                plugin.element.line,
-            )
+            name, file = shortened(plugin.name), shortened(plugin.filename)
+            what = f"world plugin '{name}' ({file}, line {plugin.element.line}) is not run here"
+            world.faults.report(what, element=f"plugin '{name}'", line=plugin.element.line)
 
 
 def describe(world: World) -> WorldSpec:

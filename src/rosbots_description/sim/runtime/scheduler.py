@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from fractions import Fraction
 
-logger = logging.getLogger(__name__)
+from ..core import Fault, FaultPlace, report
 
 NEVER = 1 << 62  # a step count that no simulation reaches
 SUSPENSION = 1000  # steps for which a failed hook is suspended, so that it does not flood the log
@@ -22,6 +22,11 @@ class Hook:
 
     due = NEVER
     runs_after_step = False
+
+    @property
+    def place(self) -> FaultPlace:
+        """Return where this is, for its faults."""
+        return {}
 
     def before_step(self) -> None:
         """Run before physics, after time has advanced, and set the next `due`."""
@@ -84,8 +89,7 @@ class Schedule:
         """Make one step: every hook that is due at `step` or before, physics, those that watch.
 
         If none watches, steps of which no hook is due follow in the same call of `physics(steps)`,
-        up to `last`. A hook that fails is told of in the log and left out for a while; the others
-        go on.
+        up to `last`. A hook that fails is reported and suspended for a while; the others go on.
 
         Returns:
             the number of steps made.
@@ -121,10 +125,9 @@ def _run_hook(hook: Hook, work: Callable[[], None], step: int) -> bool:
 
 
 def _suspend(failed: Hook | PreRunPublisher, step: int) -> None:
-    """Log the exception that is being handled, and suspend the hook that raised it."""
-    logger.exception(
-        'internal fault of %s; the simulation goes on, without it for %d steps',
-        type(failed).__name__,
-        SUSPENSION,
-    )
+    """Report the exception that is being handled, and suspend the hook that raised it."""
+    what = f'internal fault of {type(failed).__name__}; the simulation goes on'
+    what += f', without it for {SUSPENSION} steps'
+    place = failed.place if isinstance(failed, Hook) else FaultPlace()
+    report(Fault(what, logging.ERROR, internal=True, **place))
     failed.due = step + SUSPENSION

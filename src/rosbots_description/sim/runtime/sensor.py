@@ -4,7 +4,7 @@ from ..description import SensorSpec
 from .model_part import ModelPart
 
 
-class SensorLife(ModelPart):
+class SensorPart(ModelPart):
     """A sensor of a <sensor> element, fixed to a link."""
 
     spec: SensorSpec

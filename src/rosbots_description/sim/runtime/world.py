@@ -1,20 +1,24 @@
 """The world: a clock, a physics engine, models in spawn order, and a schedule of hooks."""
 
 import contextlib
+import functools
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Protocol
+from typing import Concatenate, ParamSpec, TypeVar
 
 from ..core import (
     END,
     IDENTITY,
     MAX_COORDINATE,
+    Faults,
     ModelError,
     NotFoundError,
     Pose,
+    Receiver,
     SimClock,
     Twist,
+    reporting_to,
 )
 from ..description import LightSpec, ModelSpec, PhysicsSettings, WorldSpec
 from ..physics import CompiledModel, EngineFactory, make_engine
@@ -28,14 +32,15 @@ from .part_loading import PartLoader
 from .saved_state import SavedState
 from .scheduler import Schedule
 
-logger = logging.getLogger(__name__)
+P = ParamSpec('P')
+T = TypeVar('T')
 
 WORLD_FRAMES = ('', 'world', 'map', '/map')
 Entity = Model | NestedModel | Link | CollisionFrame
 
 
-class Listener(Protocol):
-    """Observer of spawned and deleted models; called on the world's own thread."""
+class Listener:
+    """Observer of a world, called on the world's own thread; by itself it does nothing."""
 
     def model_spawned(self, model: Model) -> None:
         """A model was spawned, with its plugins."""
@@ -45,6 +50,19 @@ class Listener(Protocol):
 
     def world_reset(self) -> None:
         """Poses, and perhaps time, were reset."""
+
+
+def _reporting(
+    method: 'Callable[Concatenate[World, P], T]',
+) -> 'Callable[Concatenate[World, P], T]':
+    """Return a method of a world that hands what is reported in it to the world's faults."""
+
+    @functools.wraps(method)
+    def reporting(world: 'World', /, *args: P.args, **kwargs: P.kwargs) -> T:
+        with reporting_to(world.faults.add):
+            return method(world, *args, **kwargs)
+
+    return reporting
 
 
 class World:
@@ -57,16 +75,19 @@ class World:
         self,
         physics: PhysicsSettings | None = None,
         make_engine: EngineFactory = make_engine,
+        on_fault: Receiver | None = None,
     ) -> None:
         """Open an empty world.
 
         Args:
             make_engine: makes the physics engine.
+            on_fault: see `Faults`.
         """
         self.spec = WorldSpec()  # as it was read; when saved, what nothing here acts on is as there
         self.name, self.scene = self.spec.name, self.spec.scene
         self.physics = physics or PhysicsSettings()
         self.clock = SimClock(self.physics.step_size)
+        self.faults = Faults(self.clock, on_fault)
         self.schedule = Schedule()
         self.external_forces = ExternalForces(self.clock)
         self.schedule.add(self.external_forces)
@@ -93,10 +114,11 @@ class World:
         self.resources.close()
         self.engine.close()
 
+    @_reporting
     def run(self, steps: int) -> int:
         """Advance by exactly `steps`: in each, time first, then hooks, then physics.
 
-        Where time ends, the world is paused and an error is logged.
+        Where time ends, the world is paused, which is reported as an error.
 
         Returns:
             the number of steps made: fewer if time ended.
@@ -110,11 +132,9 @@ class World:
             clock.steps += schedule.run(clock.steps, end, engine.step) - 1
         if begin + steps > last:
             self.paused = True
-            logger.error(
-                'the simulation is paused at %d s: stamps of 32 bits end there. '
-                'reset_simulation begins again at 0 s',
-                END,
-            )
+            what = f'the simulation is paused at {END} s: stamps of 32 bits end there. '
+            what += 'reset_simulation begins again at 0 s'
+            self.faults.report(what, logging.ERROR)
         return end - begin
 
     def set_physics(self, physics: PhysicsSettings) -> None:
@@ -138,6 +158,7 @@ class World:
         self._holders.discard(holder)
         self.engine.enable(not self._holders)
 
+    @_reporting
     def compile(self, spec: ModelSpec) -> CompiledModel:
         """Compile a model for spawning; the only method that any thread may call.
 
@@ -146,10 +167,11 @@ class World:
         """
         return self.engine.compile(spec)
 
+    @_reporting
     def spawn(self, model: ModelSpec | CompiledModel, name: str, pose: Pose) -> Model:
         """Spawn a model and load its plugins.
 
-        A plugin that fails is logged and left out.
+        A plugin that fails is reported and left out.
 
         Args:
             model: a `ModelSpec` is compiled first, which may take long.
@@ -171,7 +193,7 @@ class World:
         try:
             PartLoader(self, spawned).load()
         except BaseException:
-            self._remove(spawned)  # nobody has been told of it
+            self._remove(spawned)  # before listeners hear of it
             raise
         for listener in self.listeners:
             listener.model_spawned(spawned)
@@ -191,6 +213,7 @@ class World:
         bodies = self.engine.touching(model.body)
         return [name for name, other in self.models.items() if other.body in bodies]
 
+    @_reporting
     def delete(self, name: str) -> None:
         """Delete a model and its plugins.
 
@@ -217,6 +240,7 @@ class World:
         model.remove_from_engine()
         del self.models[model.name]
 
+    @_reporting
     def reset_world(self) -> None:
         """Bring every model back to its spawn pose, at rest; joints stay, time goes on."""
         for model in self.models.values():
@@ -227,6 +251,7 @@ class World:
             part.reset()
         self._notify_reset()
 
+    @_reporting
     def reset_simulation(self) -> None:
         """Restart at time zero: every model at its spawn pose, with the same motion as then.
 
@@ -252,6 +277,7 @@ class World:
         own = self.external_forces, self.holds, self._watchdog
         return SavedState(self, (*own, *self._parts()))
 
+    @_reporting
     def restore(self, state: SavedState) -> None:
         """Restore a saved state, including time and the state of plugins.
 
@@ -280,11 +306,12 @@ class World:
         for model in diverged:
             for part in model.parts:
                 part.restart()
-            logger.error(
-                "model '%s' diverged: its pose or velocity was no longer a number of this world. "
-                'It is back where it was spawned; a command, force or property was too large',
-                model.name,
+            what = (
+                f"model '{model.name}' diverged: its pose or velocity was no longer a number of "
+                'this world. It is back where it was spawned; a command, force or property was '
+                'too large'
             )
+            self.faults.report(what, logging.ERROR, model=model.name)
 
     def find_entity(self, name: str) -> Entity | None:
         """Return the first entity with that scoped or plain name, depth first in world order."""

@@ -3,11 +3,11 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ..core import MIN_UPDATE_RATE, NANOSECONDS, PluginError, Pose, compose
+from ..core import MIN_UPDATE_RATE, NANOSECONDS, FaultPlace, PluginError, Pose, compose
 from ..description import PluginSpec, SensorSpec
 from ..plugin_registry import register_sensor
 from ..plugins import ModelPlugin
-from ..runtime import NEVER, Output, SensorLife
+from ..runtime import NEVER, Output, SensorPart
 from .noise import RandomSteps
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class DueTimes:
         return self._begin_ns + round((int(passed + 1e-6) + 1) * self._period_ns)
 
 
-class Sensor(SensorLife):
+class Sensor(SensorPart):
     """Measures at its own rate while its output has readers; otherwise it costs nothing.
 
     A subclass is registered by `register_sensor(type)`, reads its elements in `load`, and returns a
@@ -68,6 +68,12 @@ class Sensor(SensorLife):
         self.called = f"{spec.type or 'sensor'} '{spec.name}' of link '{link.name}'"
         self.readings: Output[Any] = Output(self.count_readers)
         self.random = RandomSteps(world, self.scoped_name)
+
+    @property
+    def place(self) -> FaultPlace:
+        """Return where this is, for its faults."""
+        called, line = f"{self.spec.type or 'sensor'} '{self.name}'", self.spec.element.line
+        return {'model': self.model.name, 'link': self.link.name, 'element': called, 'line': line}
 
     @property
     def pose(self) -> Pose:
@@ -160,6 +166,11 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
         self.sensor = sensor
         self._receiving = False
         self.random = RandomSteps(self.world, f'{sensor.scoped_name}::{spec.name}')
+
+    @property
+    def place(self) -> FaultPlace:
+        """Return where this is, for its faults."""
+        return {**super().place, 'link': self.sensor.link.name}
 
     def start(self) -> None:
         """Load and begin.

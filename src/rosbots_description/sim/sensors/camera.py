@@ -21,8 +21,6 @@ from .base import DueTimes, Sensor
 from .noise import read_noise
 from .numbers import child_at, count, number
 
-logger = logging.getLogger(__name__)
-
 MAX_BURST = MAX_PENDING  # pictures of one camera that are sent in one step
 MAX_IMAGE_SIZE = 8192  # [pixels] along an edge
 POLL = 4  # steps between two polls for a pending picture
@@ -189,7 +187,7 @@ class CameraSensor(Sensor):
         except RenderError as error:
             if str(error) != self._complaint:
                 self._complaint = str(error)
-                logger.error("model '%s', %s: %s", self.model.name, self.called, error)
+                self._report(str(error), logging.ERROR)
         self.count_readers()
 
     def count_readers(self) -> None:
@@ -201,18 +199,17 @@ class CameraSensor(Sensor):
         if self.readings.wanted and self._capture.pending:
             self.due = min(self.due, self.world.clock.steps + POLL)
 
+    def _report(self, what: str, severity: int = logging.WARNING, cure: str = '') -> None:
+        what = f"model '{self.model.name}', {self.called}: {what}"
+        self.world.faults.report(what, severity, cure=cure, **self.place)
+
     def _count_due(self) -> None:
-        """Count a picture that is due; log once that drawing does not keep up."""
+        """Count a picture that is due; report once that drawing does not keep up."""
         reached = self._rate.count(self.world.clock.now_ns, self._capture.is_free)
         if reached is not None:
-            logger.warning(
-                "model '%s', %s: pictures come at %.3g of %.3g Hz, as drawing them takes longer; "
-                'fewer pixels, a lower <update_rate> or a graphics card would help '
-                '(doc/rendering.md)',
-                self.model.name,
-                self.called,
-                *reached,
-            )
+            what = 'pictures come at {:.3g} of {:.3g} Hz, as drawing them takes longer'
+            cure = 'fewer pixels, a lower <update_rate> or a graphics card would help '
+            self._report(what.format(*reached), cure=f'{cure}(doc/rendering.md)')
 
     def _wants(self) -> Wants:
         wanted = list(self._wanted.values())
@@ -257,13 +254,8 @@ class CameraSensor(Sensor):
         written = child.text.strip() if child is not None else 'R8G8B8'
         encoding = _ENCODINGS.get(written)
         if encoding is None:
-            logger.error(
-                "model '%s', %s: <format> '%s' is unknown; pictures are in bgr8, as in Gazebo; "
-                'B8G8R8 and R8G8B8 are known',
-                self.model.name,
-                self.called,
-                written,
-            )
+            what = f"<format> '{written}' is unknown; pictures are in bgr8, as in Gazebo"
+            self._report(what, logging.ERROR, cure='B8G8R8 and R8G8B8 are known')
             encoding = 'bgr8'
         k1, k2, k3, p1, p2 = (number(element, f'distortion/{name}', 0.0) for name in _DISTORTION)
         noise = read_noise(element.child('noise'))

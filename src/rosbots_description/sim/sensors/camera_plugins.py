@@ -3,17 +3,15 @@
 Tags, defaults and namespaces are those of gazebo_ros_pkgs 2.9.2.
 """
 
-import logging
 from typing import TypeVar
 
+from ..core import Fault, report
 from ..plugin_registry import register_in_sensor
 from ..rendering import BYTES, Lens, Picture, Wants
 from ..runtime import Output
 from .base import SensorPlugin
 from .camera import CameraSensor, MultiCameraSensor, SensedCamera
 from .camera_outputs import CameraInfo, CompressedImage, Image, StampedInfo
-
-logger = logging.getLogger(__name__)
 
 Pictures = Picture | tuple[Picture, ...]
 Value = TypeVar('Value', str, float, bool)
@@ -71,10 +69,8 @@ class CameraPlugin(SensorPlugin[Pictures]):
         self.rate = self._value('updateRate', 0.0)
         self.camera_name = self._value('cameraName', '')
         if not self.camera_name:
-            logger.warning(
-                '%s<cameraName> is missing or empty: there is no dynamic_reconfigure',
-                self.log_prefix,
-            )
+            what = '<cameraName> is missing or empty: there is no dynamic_reconfigure'
+            report(Fault(self.log_prefix + what))
         self.frame = self._value('frameName', '')
         self._topic('imageTopicName', 'image_raw')
         self._topic('cameraInfoTopicName', 'camera_info')
@@ -119,13 +115,12 @@ class CameraPlugin(SensorPlugin[Pictures]):
         seen = lens.focal_length
         focal = values['focalLength'] or seen
         if abs(focal - seen) > 1e-6 * seen:
-            logger.warning(
-                '%s<focalLength> is %g and does not fit <horizontal_fov> and width, which make '
-                '%.6g: messages say the former, pictures are taken with the latter',
-                self.log_prefix,
-                focal,
-                seen,
+            what = (
+                f'{self.log_prefix}<focalLength> is {focal:g} and does not fit <horizontal_fov> '
+                f'and width, which make {seen:.6g}: messages say the former, pictures are taken '
+                'with the latter'
             )
+            report(Fault(what))
         x = values['Cx'] or (lens.width + 1.0) / 2.0
         y = values['Cy'] or (lens.height + 1.0) / 2.0
         k1, k2, k3, t1, t2 = (
@@ -207,12 +202,9 @@ class MultiCameraPlugin(CameraPlugin):
         for number, camera in enumerate(self.sensor.cameras):
             side = next((side for side in ('left', 'right') if side in camera.name), '')
             if not side or side in found:
-                logger.warning(
-                    "%scamera '%s' has no topics: upstream looks for one 'left' and one "
-                    "'right' in the names",
-                    self.log_prefix,
-                    camera.name,
-                )
+                what = f"{self.log_prefix}camera '{camera.name}' has no topics"
+                why = "upstream looks for one 'left' and one 'right' in the names"
+                report(Fault(f'{what}: {why}'))
             else:
                 found[side] = number
         self._numbers = tuple(found.values())

@@ -17,12 +17,10 @@ from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple
 
-from ..core import Vector, add, conjugate, cross, rotate, subtract
+from ..core import Fault, Vector, add, conjugate, cross, report, rotate, subtract
 from ..plugin_registry import register_in_sensor, register_sensor
 from ..runtime import NEVER, CollisionFrame, Model
 from .base import Sensor, SensorPlugin
-
-logger = logging.getLogger(__name__)
 
 _SMALLEST, _LARGEST = -2, 8  # levels of Gazebo's hash space
 
@@ -62,14 +60,8 @@ class ContactSensor(Sensor):
             said = (
                 f'names {", ".join(missing)} as <collision>' if missing else 'names no <collision>'
             )
-            logger.warning(
-                "model '%s', %s: it %s; the collisions of '%s' are: %s",
-                self.model.name,
-                self.called,
-                said,
-                self.link.name,
-                ', '.join(known) or 'none',
-            )
+            what = f"model '{self.model.name}', {self.called}: it {said}; the collisions of "
+            report(Fault(f"{what}'{self.link.name}' are: {', '.join(known) or 'none'}"))
         self._contacts: list[ContactPair] = []
         self._next_ns = 0
 

@@ -4,18 +4,19 @@ Tags, defaults and namespaces of the plugin are those of gazebo_ros_pkgs 2.9.2, 
 quirks: 1 Hz without <updateRateHZ>, and noise on the quaternion, which is not normalised again.
 """
 
-import logging
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ..core import (
     NANOSECONDS,
+    Fault,
     Quaternion,
     Twist,
     Vector,
     conjugate,
     from_rpy,
     multiply,
+    report,
     rotate,
     subtract,
 )
@@ -23,8 +24,6 @@ from ..plugin_registry import register_in_sensor, register_sensor
 from .base import Sensor, SensorPlugin
 from .noise import gaussian, noisy, read_noise
 from .numbers import child_at
-
-logger = logging.getLogger(__name__)
 
 _AXES = 'x', 'y', 'z'
 
@@ -129,7 +128,7 @@ class ImuSensorPlugin(SensorPlugin[ImuReading]):
         read = self.params.read
         self.params.ignore('bodyName')
         if self.params.text('robotNamespace') is None:
-            logger.warning('missing <robotNamespace>, set to default: %s/', self.namespace)
+            report(Fault(f'missing <robotNamespace>, set to default: {self.namespace}/'))
         read('topicName', 'imu_data')
         self.params.required('frameName')
         self.rate = self.params.rate('updateRateHZ', 1.0)
@@ -141,11 +140,11 @@ class ImuSensorPlugin(SensorPlugin[ImuReading]):
             'initialOrientationAsReference', False
         ):
             self._reference = conjugate(self.sensor.pose.orientation)
-            logger.warning(
-                '%s<initialOrientationAsReference> set to true, this behavior is '
-                'deprecated as it does not comply with REP 145.',
-                self.log_prefix,
+            what = (
+                '<initialOrientationAsReference> set to true, this behavior is '
+                'deprecated as it does not comply with REP 145.'
             )
+            report(Fault(self.log_prefix + what))
         self.imu = self.output('imu')
 
     def process(self, reading: ImuReading) -> None:

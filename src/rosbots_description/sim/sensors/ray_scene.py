@@ -1,8 +1,8 @@
 """Ray casts against all collisions of a world.
 
-Each scan compares the poses of all links with those of the previous scan and updates those that
-moved; static models are looked at only after something was placed. Bounding spheres and boxes limit
-the number of ray-shape pairs to compute.
+The first scan after a step reads the poses of all links that move; those of static models are read
+only after something was placed. Bounding spheres and boxes limit the number of ray-shape pairs to
+compute.
 """
 
 import logging
@@ -15,19 +15,17 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ZERO, ModelError, PluginError, Pose, Vector, compose, rotate
+from ..core import ZERO, Fault, ModelError, PluginError, Pose, Vector, compose, report, rotate
 from ..core.arrays import rotation_matrix
 from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
+from ..runtime import Link, Listener, Model, World
 from . import ray_shapes
 from .link_solids import LinkSolids, corners_of
 from .ray_fan import Indices, Patches, RayFan
 from .ray_mesh import RayMesh, build_later
 
 if TYPE_CHECKING:
-    from ..runtime import Link, Model, World
     from .base import Sensor
-
-logger = logging.getLogger(__name__)
 
 Floats = NDArray[np.float64]
 
@@ -41,15 +39,14 @@ _MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
 MANY_RAYS, MAX_RAYS = 200_000, 5_000_000  # of all sensors of a world, each with one scan
 
 
-class RayScene:
+class RayScene(Listener):
     """The collisions of all models of a world, in arrays."""
 
-    def __init__(self, world: 'World') -> None:
+    def __init__(self, world: World) -> None:
         self._models: list[Model] = []
-        self._seen: list[Pose] = []  # of the links that the last scan compared
+        self._engine, self._read = world.engine, (-1, -1)  # its counters, when poses were read
         self._known_meshes: dict[Mesh, Future[RayMesh]] = {}
         self._unreadable: set[Mesh] = set()  # of these an error was logged
-        self._placements = -1  # as the engine counts them, when static models were read
         self._rays: WeakKeyDictionary[Sensor, int] = WeakKeyDictionary()  # of a scan
         self._reported = MANY_RAYS / 2  # rays in the last warning about their sum
         self._world_models = world.models  # a reference to the world would keep it alive
@@ -59,7 +56,7 @@ class RayScene:
         world.listeners.append(self)
 
     @classmethod
-    def of(cls, world: 'World') -> 'RayScene':
+    def of(cls, world: World) -> 'RayScene':
         """Return the scene of a world, shared by its sensors."""
         if world not in _SCENES:
             _SCENES[world] = cls(world)
@@ -80,24 +77,19 @@ class RayScene:
         self._rays[sensor] = rays
         if total > MANY_RAYS and total >= 2 * self._reported:
             self._reported = total
-            logger.warning(
-                "model '%s', %s: %d rays, with those of all other sensors, take long; the "
-                'simulation waits for each scan',
-                sensor.model.name,
-                sensor.called,
-                total,
-            )
+            what = f"model '{sensor.model.name}', {sensor.called}: {total} rays, with those of all "
+            report(Fault(f'{what}other sensors, take long; the simulation waits for each scan'))
 
     def remove_rays(self, sensor: 'Sensor') -> None:
         """Count the rays of a sensor no more."""
         self._rays.pop(sensor, None)
         self._reported = max(MANY_RAYS / 2, min(self._reported, sum(self._rays.values())))
 
-    def model_spawned(self, model: 'Model') -> None:
+    def model_spawned(self, model: Model) -> None:
         """Begin to build its meshes, so that the first scan needs not."""
         self._build(collision.geometry for _, collision in _collisions([model]))
 
-    def model_deleted(self, model: 'Model') -> None:
+    def model_deleted(self, model: Model) -> None:
         """Drop it, and its meshes that no other model has."""
         if model in self._models:
             self._models.remove(model)
@@ -106,9 +98,6 @@ class RayScene:
         used = {collision.geometry for _, collision in _collisions(others)}
         for mesh in self._known_meshes.keys() - used:
             del self._known_meshes[mesh]
-
-    def world_reset(self) -> None:
-        """Keep all meshes."""
 
     def cast(self, pose: Pose, fan: RayFan, least: float, most: float) -> tuple[Floats, Floats]:
         """Return the distances (n,) [m] of the first hits, and the laser_retro (n,) of what is hit.
@@ -239,16 +228,14 @@ class RayScene:
         if models != self._models:
             self._models = models
             self._lay_out()
-        placements = self._models[0].engine.placements if self._models else 0
-        if placements != self._placements:
-            self._placements = placements
-            links, rows = self._links, self._rows
-        else:
-            links, rows = self._moving, self._moving_rows
-        poses = [link.pose for link in links]
-        if poses == self._seen:
+        placements, last = self._engine.placements, self._read
+        self._read = placements, self._engine.advances
+        if self._read == last:
             return
-        self._seen = poses
+        links, rows = self._moving, self._moving_rows
+        if placements != last[0]:
+            links, rows = self._links, self._rows
+        poses = [link.pose for link in links]
         numbers = np.array([(*place, *turned) for place, turned in poses])
         self._solids.place(*rows, numbers.reshape(-1, 7))  # no row where all models are static
         for row, (link, collision, normal) in enumerate(self._planes):
@@ -261,8 +248,7 @@ class RayScene:
         found = list(_collisions(self._models))
         self._links = list(dict.fromkeys(link for link, _ in found))
         self._moving = [link for link in self._links if not link.model.static]
-        self._seen = []
-        self._placements = -1
+        self._read = -1, -1
         solids: list[tuple[Link, Collision]] = []
         self._ends: dict[type, int] = {}
         for kind in _FORMULAS:
@@ -316,12 +302,12 @@ class RayScene:
             return self._known_meshes[shape].result()
         except ModelError as error:
             if shape not in self._unreadable:
-                logger.error('rays do not see a mesh: %s', error)
+                report(Fault(f'rays do not see a mesh: {error}', logging.ERROR))
                 self._unreadable.add(shape)
             return None
 
 
-def _collisions(models: 'list[Model]') -> 'Iterator[tuple[Link, Collision]]':
+def _collisions(models: list[Model]) -> Iterator[tuple[Link, Collision]]:
     for model in models:
         for link in model.links.values():
             for collision in link.spec.collisions:
@@ -352,4 +338,4 @@ def _radius(shape: Geometry) -> float:
     return radius * (1.0 + 1e-9) + 1e-9
 
 
-_SCENES: WeakKeyDictionary['World', RayScene] = WeakKeyDictionary()
+_SCENES: WeakKeyDictionary[World, RayScene] = WeakKeyDictionary()

@@ -10,13 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import Fault, report
 from ..plugin_registry import register_in_sensor
 from .base import SensorPlugin
 from .noise import gaussian
 from .ray import RaySensor, Scan
 from .ray_fan import Sweep
-
-logger = logging.getLogger(__name__)
 
 RING_POINT = np.dtype(
     [
@@ -64,13 +63,9 @@ class VelodynePlugin(SensorPlugin[Scan]):
         self._most = min(read('max_range', math.inf, 'infinity'), sensor.range_max)
         self._dimmest = read('min_intensity', -math.inf, 'no clipping')
         if not self._least < self._most:
-            logger.warning(
-                '%sfinds no points: <min_range> leaves those beyond %g m, and '
-                '<max_range> those nearer than %g m',
-                self.log_prefix,
-                self._least,
-                self._most,
-            )
+            what = f'finds no points: <min_range> leaves those beyond {self._least:g} m, and '
+            what += f'<max_range> those nearer than {self._most:g} m'
+            report(Fault(self.log_prefix + what))
         self.cloud = self.output('cloud', bool(read('topicName', '/points')))
         self._noise = gaussian(read('gaussianNoise', 0.0, '0.0'), '<gaussianNoise>')
         yaw, pitch = _angles(sensor.horizontal)[:, None], _angles(sensor.vertical)

@@ -142,7 +142,8 @@ def test_a_transmission_of_two_joints_is_named_and_the_others_work(world, caplog
             'No name attribute specified for transmission.',
         ),
         (
-            '<transmission name="joint2_trans"><type>transmission_interface/SimpleTransmission</type>',
+            '<transmission name="joint2_trans"><type>'
+            'transmission_interface/SimpleTransmission</type>',
             '<transmission name="joint2_trans">',
             "No type element found in transmission 'joint2_trans'.",
         ),

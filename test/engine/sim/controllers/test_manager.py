@@ -93,7 +93,8 @@ def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
             PID,
             GAINS | {'joint': 'nose'},
             (
-                "Exception thrown while initializing controller 'c'.\nCould not find resource 'nose' in "
+                "Exception thrown while initializing controller 'c'.\nCould not find resource "
+                "'nose' in "
                 "'hardware_interface::EffortJointInterface'.",
                 "Initializing controller 'c' failed",
             ),
@@ -129,7 +130,8 @@ def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
             ONE,
             {'joint': 'joint1'},
             (
-                "Exception thrown while initializing controller 'c'.\nCould not find resource 'joint1' in "
+                "Exception thrown while initializing controller 'c'.\nCould not find resource "
+                "'joint1' in "
                 "'hardware_interface::PositionJointInterface'.",
                 "Initializing controller 'c' failed",
             ),
@@ -175,8 +177,10 @@ def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
             'my/Controller',
             {},
             (
-                "Could not load controller 'c' because controller type 'my/Controller' does not exist.",
-                "Use 'rosservice call controller_manager/list_controller_types' to get the available "
+                "Could not load controller 'c' because controller type 'my/Controller' does not "
+                'exist.',
+                "Use 'rosservice call controller_manager/list_controller_types' to get the "
+                'available '
                 'types',
             ),
         ),
@@ -184,7 +188,8 @@ def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
             '',
             {},
             (
-                "Could not load controller 'c' because the type was not specified. Did you load the "
+                "Could not load controller 'c' because the type was not specified. Did you load "
+                'the '
                 "controller configuration on the parameter server (namespace: '/arm/c')?",
             ),
         ),

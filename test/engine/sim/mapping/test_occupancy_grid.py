@@ -170,9 +170,10 @@ def test_files_are_those_of_map_server(tmp_path):
         world.save_map(tmp_path / "it's.yaml", HEIGHT, CELL, margin=0.0)
         with pytest.raises(SimError, match='exists already'):
             world.save_map(tmp_path / "it's", HEIGHT, CELL, margin=0.0)
+    # from the top
     assert (tmp_path / "it's.pgm").read_bytes() == (
         b'P5\n3 2\n255\n' + bytes([0, 254, 254, 0, 0, 0])
-    )  # from the top
+    )
     assert (tmp_path / "it's.yaml").read_text() == (
         'image: "it\'s.pgm"\nresolution: 0.1\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n'
         'occupied_thresh: 0.65\nfree_thresh: 0.196\n'

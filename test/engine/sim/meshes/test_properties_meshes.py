@@ -73,7 +73,8 @@ def ascii_stls(draw):
         [
             'solid s',
             *(
-                f'facet normal 0 0 1\nouter loop\nvertex {words(points[0])}\nvertex {words(a)}\nvertex '
+                f'facet normal 0 0 1\nouter loop\nvertex {words(points[0])}\nvertex '
+                f'{words(a)}\nvertex '
                 f'{words(b)}\nendloop\nendfacet'
                 for a, b in pairwise(points[1:])
             ),

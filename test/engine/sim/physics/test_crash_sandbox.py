@@ -15,7 +15,7 @@ from dataclasses import replace
 import pytest
 from support import box_urdf, robot_spec, urdf_spec
 
-from rosbots_description.sim.core import process_watch
+from rosbots_description.sim.core import Fault, process_watch, report
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description.model_spec import (
@@ -318,7 +318,7 @@ def test_output_and_log_of_a_test_are_discarded(capfd, caplog):
     def chatter():
         os.write(1, b'b3Warning: no inertial')
         os.write(2, b'Fatal Python error')
-        crash_sandbox.logger.error('lost')
+        report(Fault('lost'))
 
     passes(CRATE, chatter)
     assert capfd.readouterr() == ('', '')

@@ -54,7 +54,7 @@ def test_noise_is_limited_to_the_range_and_no_return_has_none(scene):
 
 
 def test_what_is_missing_is_said_in_upstreams_words_but_warns_of_nothing(scene, caplog):
-    caplog.set_level(logging.INFO, 'rosbots_description.sim.plugins')
+    caplog.set_level(logging.INFO, 'rosbots_description.sim')
     spawn_gpu(scene, 'laser_nonoise', '<frameName>laser_link</frameName>', '')
     assert [(record.levelname, record.getMessage()) for record in caplog.records] == [
         ('INFO', 'Laser plugin missing <frameName>, defaults to /world')

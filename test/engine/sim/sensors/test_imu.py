@@ -123,9 +123,10 @@ def test_a_body_behind_a_fixed_joint_has_the_recorded_attitude_in_a_strict_world
     world.strict = True
     _, found = spawn(world, 'imu_model_lumped', yaw=0.7)
     world.run(20)
+    # rest.quat_mean of the recording
     assert found[-1][1].orientation == pytest.approx(
         (-0.00215763, 0.00228483, 0.338335, 0.941021), abs=1e-6
-    )  # rest.quat_mean of the recording
+    )
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import math
 import random
 from contextlib import closing
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -121,6 +122,18 @@ def test_moving_model_is_seen_at_its_pose_at_the_end_of_the_step(scene):
         (x, y, z), (bx, by, bz) = sensor.pose.position, ball.pose.position
         distance = math.dist((x, y, z), (bx, by, bz)) - 0.1
         assert sensor.read().ranges.min() == pytest.approx(distance, abs=1e-4)  # near its middle
+
+
+def test_poses_are_read_once_after_steps_in_which_something_was_awake(scene, monkeypatch):
+    robot, read = scene.spawn(ROBOT), Mock(wraps=scene.engine.link_pose)
+    monkeypatch.setattr(scene.engine, 'link_pose', read)
+    counts = []
+    for steps in (1, 0, 3000, 10):
+        scene.run(steps)
+        read.reset_mock()
+        robot.sensor('head_hokuyo_sensor').read()
+        counts.append(read.call_count)
+    assert counts == [9, 1, 2, 1], 'at first of static models, too; its own for each scan'
 
 
 def test_a_static_robot_among_static_models_scans_at_its_rate():

@@ -71,11 +71,12 @@ def read(case, folder):
 
 
 def may_be_opened(path, case, folder):
+    # a lazy import, of a codec for example
     return (
         path == case.opens
         or path.startswith((str(folder), str(FOLDER), str(BUILT_IN)))
         or path.endswith('.pyc')
-    )  # a lazy import, of a codec for example
+    )
 
 
 @pytest.mark.parametrize('case', CASES, ids=lambda case: case.name)

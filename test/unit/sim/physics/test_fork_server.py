@@ -140,10 +140,10 @@ def test_child_that_waits_for_a_processor_is_not_killed(monkeypatch):
 
     def work(_):
         begin = time.monotonic()
-        burn(1.0)
+        burn(0.3)
         return str(time.monotonic() - begin)
 
-    assert float(outcome(work, allowance=1.5)) > 1.5  # in spite of a longer wall time
+    assert float(outcome(work, allowance=0.45)) > 0.45  # in spite of a longer wall time
 
 
 def test_child_does_not_delay_others():

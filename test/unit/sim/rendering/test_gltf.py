@@ -109,9 +109,10 @@ def test_colours_are_linear_and_what_glows_or_shines_through_does():
         Material((0.5, 0.0, 1.0, 0.25), reflection=Reflection(emissive=(1.0, 0.0, 0.0), lit=False)),
     )
     (material,) = tree['materials']
+    # sRGB 0.5 is 0.214 of the light
     assert material['pbrMetallicRoughness']['baseColorFactor'] == pytest.approx(
         [0.2140, 0.0, 1.0, 0.25], abs=1e-4
-    )  # sRGB 0.5 is 0.214 of the light
+    )
     assert material['emissiveFactor'] == [1.0, 0.0, 0.0]
     assert material['alphaMode'] == 'BLEND'
     assert 'KHR_materials_unlit' in material['extensions']

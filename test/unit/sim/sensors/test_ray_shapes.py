@@ -182,7 +182,7 @@ LEVEL = Sweep(1, 1, 0.0, 0.0)
         (LEVEL, (5.0, 0.0, 1.01), False),
         (LEVEL, (5.0, 0.0, -0.99), True),
         (LEVEL, (5.0, 0.0, -1.01), False),
-        # Rays between two elevations [rad]: the ball touches the cone of the last ones, or does not.
+        # Rays between two elevations [rad]: the ball touches the cone of the last ones, or not.
         *(
             (Sweep(5, 5, -0.2, 0.3), (math.cos(angle), 0.0, math.sin(angle)), kept)
             for limit, side in ((-0.2, -1.0), (0.3, 1.0))

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from ...core import Twist
+from ...core import Fault, Twist, report
 from ...description import Cylinder, Sphere
 from ...runtime import FrameTransform, Odometry, Output
 from ..controller import RUNNING, Controller, RateGate, nanoseconds, require_finite
@@ -15,8 +15,6 @@ from .speed_limiter import SpeedLimiter
 
 if TYPE_CHECKING:
     from ..hardware import JointHandle
-
-logger = logging.getLogger(__name__)
 
 _DIAGONAL = 6
 _SHORTEST, _LONGEST = 1e-6, 1e6  # of lengths [m], and of factors on them
@@ -180,7 +178,8 @@ class DriveController(Controller):
             and all(isinstance(one, int | float) for one in given)
         ):
             return tuple(map(float, given))
-        logger.error("Controller '%s': %s must list six numbers; zeros are used", self.name, path)
+        what = f"Controller '{self.name}': {path} must list six numbers; zeros are used"
+        report(Fault(what, logging.ERROR))
         return (0.0,) * _DIAGONAL
 
     def wheel_names(self, path: str) -> list[str]:

@@ -4,7 +4,6 @@ Of the first pass of a material these are read: ambient, diffuse, specular, emis
 Parents, shaders, blending and the placing of textures are not.
 """
 
-import logging
 import os
 import re
 from collections.abc import Iterator
@@ -12,11 +11,9 @@ from contextlib import suppress
 
 from lxml import etree
 
-from ...core import ModelError, Vector, parse_numbers
+from ...core import Fault, ModelError, Vector, parse_numbers, report
 from ...description import Material, Reflection
 from ...resources import Addresses, read_file, within
-
-logger = logging.getLogger(__name__)
 
 MAX_SCRIPT_BYTES = 1_000_000
 _COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/', re.DOTALL)
@@ -122,5 +119,5 @@ def _image(setting: str, name: str, folders: list[str]) -> str:
         path = os.path.join(folder, file)
         if within(path, folder) and os.path.isfile(path):
             return os.path.realpath(path)
-    logger.warning("material '%s' names the image '%s', which is not there", name, file)
+    report(Fault(f"material '{name}' names the image '{file}', which is not there"))
     return ''

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from lxml import etree
 
-from ...core import fault
+from ...core import Fault, fault, line_of, place
 from ...description import Material
 from ...resources import (
     MAX_XML_BYTES,
@@ -64,14 +64,14 @@ class SdfDocument:
                 '<sdf version="1.6">',
             )
         for sentence in remove_xacro(self.root):
-            self.notes.say(f'{source}: {sentence}')
+            self.notes.add(Fault(f'{source}: {sentence}'))
         self._directory = directory
         self._home = home
         self.version = self._read_version()
         if self.version < FIRST_WITH_ELEMENTS:
             to_elements(self.root)
-        for sentence in complete_poses(self.root):
-            self.notes.say(f'{source}, {sentence}')
+        for pose, sentence in complete_poses(self.root):
+            self.notes.add(Fault(f'{source}, {line_of(pose)}: {sentence}', **place(pose)))
 
     def file(self, element: etree._Element, uri: str) -> str:
         """Return the absolute path of an address in `element`; see `Addresses.path`."""
@@ -166,7 +166,7 @@ class SdfLibrary:
         finally:
             self._reading.pop()
 
-    def log_notes(self) -> None:
-        """Log the notes about all documents."""
+    def report(self, model: str = '') -> None:
+        """Report the notes about all documents; see `Notes.report`."""
         for document in self._documents.values():
-            document.notes.log()
+            document.notes.report(model)

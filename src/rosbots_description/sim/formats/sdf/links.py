@@ -77,7 +77,7 @@ def _sensors(
     document: SdfDocument, link: etree._Element, frames: Frames, link_pose: Pose
 ) -> tuple[SensorSpec, ...]:
     return tuple(
-        read_sensor(child, document.notes.say, _pose_in_link(child, frames, link_pose))
+        read_sensor(child, document.notes.warn, _pose_in_link(child, frames, link_pose))
         for child in link.iterfind('sensor')
     )
 

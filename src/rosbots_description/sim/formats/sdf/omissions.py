@@ -2,14 +2,21 @@
 
 import logging
 from collections.abc import Collection
+from dataclasses import replace
 from itertools import islice
 
 from lxml import etree
 
-from ...core import MAX_NOTES, line_of, location, parse_numbers, shortened
+from ...core import (
+    MAX_NOTES,
+    Fault,
+    line_of,
+    parse_numbers,
+    report,
+    shortened,
+    warning,
+)
 from ..xml import LeftOut, scalar, tag_of
-
-logger = logging.getLogger(__name__)
 
 # A leaf with a value that holds here anyway is not mentioned.
 _NEUTRAL: dict[str, tuple[float, ...]] = {
@@ -62,7 +69,7 @@ _EMPTY = {
 
 
 class Notes:
-    """Collects the notes about one file; `log` logs them, each once.
+    """Collects the notes about one file; `report` reports them, each once.
 
     Attributes:
         left_out: parts of its models that were left out.
@@ -73,7 +80,7 @@ class Notes:
         self._source = source
         self._unread: dict[str, dict[str, None]] = {}  # path -> lines, in order
         self._idle: dict[str, dict[str, None]] = {}
-        self._sentences: dict[str, None] = {}
+        self._faults: dict[str, Fault] = {}  # by their sentences
 
     def check(
         self, element: etree._Element, read: Collection[str], idle: Collection[str] = ()
@@ -97,25 +104,29 @@ class Notes:
 
     def warn(self, element: etree._Element, sentence: str) -> None:
         """Note that something is done differently than `element` specifies."""
-        self.say(f'{location(element)}: {shortened(sentence)}')
+        self.add(warning(element, shortened(sentence)))
 
-    def say(self, sentence: str) -> None:
-        """Note a sentence that names its own location."""
-        if len(self._sentences) < MAX_NOTES:
-            self._sentences[sentence] = None
-        elif len(self._sentences) == MAX_NOTES:
-            self._sentences[f'{self._source}: more warnings of this kind are not listed'] = None
+    def add(self, fault: Fault) -> None:
+        """Note a fault whose sentence names its location."""
+        if len(self._faults) == MAX_NOTES:
+            fault = Fault(f'{self._source}: more warnings of this kind are not listed')
+        if len(self._faults) <= MAX_NOTES:
+            self._faults.setdefault(fault.what, fault)
 
-    def log(self) -> None:
-        """Log all notes; those without effect on the simulation at level debug."""
-        for sentence in self.left_out.errors():
-            logger.error('%s', self.with_source(sentence))
-        for sentence in (*self._sentences, *self.left_out.warnings):
-            logger.warning('%s', self.with_source(sentence))
+    def report(self, model: str = '') -> None:
+        """Report all notes; those without effect on the simulation at level debug.
+
+        Args:
+            model: the name of the model that the file describes; '' for several.
+        """
+        faults = [*self.left_out.errors(), *self._faults.values(), *self.left_out.warnings]
         if self._unread:
-            logger.warning('%s: not simulated: %s', self._source, _list(self._unread))
+            faults.append(Fault(f'not simulated: {_list(self._unread)}'))
         if self._idle:
-            logger.debug('%s: without effect here: %s', self._source, _list(self._idle))
+            faults.append(Fault(f'without effect here: {_list(self._idle)}', logging.DEBUG))
+        for fault in faults:
+            what = self.with_source(fault.what)
+            report(replace(fault, what=what, model=model or fault.model))
 
     def with_source(self, sentence: str) -> str:
         """Return a sentence that begins with the file."""

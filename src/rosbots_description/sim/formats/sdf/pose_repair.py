@@ -2,19 +2,19 @@
 
 from lxml import etree
 
-from ...core import line_of, parse_numbers, shortened
+from ...core import parse_numbers, shortened
 from ..xml import scalar
 
 _NUMBERS = 6  # x y z roll pitch yaw
 _FOREIGN = ('plugin',)  # their content is interpreted by their readers
 
 
-def complete_poses(root: etree._Element) -> list[str]:
-    """Make each numeric <pose> have six numbers, in place; return the warnings.
+def complete_poses(root: etree._Element) -> list[tuple[etree._Element, str]]:
+    """Make each numeric <pose> have six numbers, in place; return each, with a warning.
 
     As in Gazebo missing numbers are 0, and excess ones are ignored.
     """
-    sentences = []
+    completed = []
     for element in root.iter('pose'):
         text = scalar(element)
         count = len(text.split())
@@ -23,11 +23,12 @@ def complete_poses(root: etree._Element) -> list[str]:
         if count == 7 and element.get('rotation_format') == 'quat_xyzw':
             continue
         element.text = ' '.join([*text.split(), *'000000'][:_NUMBERS])
-        sentences.append(
-            f'{line_of(element)}: a <pose> has six numbers, this one has {count}: '
+        sentence = (
+            f'a <pose> has six numbers, this one has {count}: '
             f"'{shortened(text, 100)}' is read as '{shortened(element.text, 100)}'"
         )
-    return sentences
+        completed.append((element, sentence))
+    return completed
 
 
 def _is_foreign(element: etree._Element) -> bool:

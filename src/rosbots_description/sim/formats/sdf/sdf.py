@@ -1,19 +1,15 @@
 """Convert the text of an SDF to a `ModelSpec` or a `LightSpec`."""
 
-import logging
-
 from lxml import etree
 
-from ...core import IDENTITY, ModelError, Pose, fault
+from ...core import Pose, fault
 from ...description import LightSpec, ModelSpec
 from ...resources import Addresses, FileSearch, FindModel, FindPackage
-from ..xml import check_name, inject_namespace
+from ..xml import check_name, initial_pose, inject_namespace
 from .document import SdfDocument, SdfLibrary
 from .lights import read_light
 from .models import ModelParts, model_spec, read_include, read_model
 from .values import pose_in
-
-logger = logging.getLogger(__name__)
 
 
 def load_sdf(
@@ -44,7 +40,7 @@ def load_sdf(
     Raises:
         ModelError: the description cannot be simulated; the message says where and why.
 
-    What is simulated differently than written is logged as a warning, once per file.
+    What is simulated differently than written is reported as a warning, once per file.
     """
     check_name(name)
     library = SdfLibrary(Addresses(find_model, find_package, find_file))
@@ -52,8 +48,8 @@ def load_sdf(
     inject_namespace(document.root, robot_namespace)
     parts, pose_element = _first_model(document)
     spec = model_spec(parts, name)
-    library.log_notes()
-    return spec, _own_pose(pose_element)
+    library.report(name)
+    return spec, initial_pose(lambda: pose_in(pose_element), name)
 
 
 def load_sdf_light(text: str | bytes, name: str, *, source: str = 'model_xml') -> LightSpec | None:
@@ -70,7 +66,7 @@ def load_sdf_light(text: str | bytes, name: str, *, source: str = 'model_xml') -
     check_name(name)
     first.set('name', name)
     light = read_light(document, first, pose_in(first.find('pose')))
-    library.log_notes()
+    library.report()
     return light
 
 
@@ -85,12 +81,3 @@ def _first_model(document: SdfDocument) -> tuple[ModelParts, etree._Element | No
     if include is None:
         raise fault(root, 'it has neither a <model> nor a <world> with an <include>')
     return read_include(document, include), include.find('pose')
-
-
-def _own_pose(element: etree._Element | None) -> Pose:
-    """Return the pose; a malformed one is ignored, as upstream."""
-    try:
-        return pose_in(element)
-    except ModelError as error:
-        logger.error('%s; the pose is ignored, and the model is at its initial pose', error)
-        return IDENTITY

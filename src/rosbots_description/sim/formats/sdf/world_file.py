@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
-from ...core import ModelError, Pose, fault
+from ...core import Fault, ModelError, Pose, fault, report
 from ...description import Element, LightSpec, ModelSpec, ModelState, PluginSpec, WorldSpec
 from ...resources import (
     MAX_XML_BYTES,
@@ -30,8 +30,6 @@ from .physics import read_physics
 from .scene import READ_OF_SCENE, read_scene, read_user_camera
 from .state import read_states
 from .values import text_of
-
-logger = logging.getLogger(__name__)
 
 _READ = (
     'model',
@@ -81,7 +79,7 @@ def load_world(
     """Read and check a world file.
 
     A model, light, frame or state that is not valid, or an <include> that is not found, is left out
-    with an error in the log and in `WorldSpec.faults`; the others are loaded, as in Gazebo.
+    which is reported as an error and in `WorldSpec.faults`; the others are loaded, as in Gazebo.
 
     Args:
         source: the file's path; it begins every message, and relative addresses start from it.
@@ -126,7 +124,7 @@ def load_world(
         tuple(_parts(world)),
         tuple(content.faults),
     )
-    library.log_notes()
+    library.report()
     return spec
 
 
@@ -150,18 +148,19 @@ def open_world(
 
 @contextmanager
 def _left_out(content: _Content, tag: str) -> Iterator[None]:
-    """Log a fault in one element of a world as an error, and leave the element out."""
+    """Report a fault in one element of a world as an error, and leave the element out."""
     try:
         yield
     except MissingModel as error:
         content.missing.append(error)
     except ModelError as error:
         content.faults.append(str(error))
-        logger.error('%s; %s', error, _WITHOUT.get(tag, _WITHOUT['model']))
+        without = _WITHOUT.get(tag, _WITHOUT['model'])
+        report(Fault(f'{error}; {without}', logging.ERROR, **error.place))
 
 
 def _report_missing(document: SdfDocument, content: _Content) -> None:
-    """Log the models that are not found in one line."""
+    """Report the models that are not found as one error."""
     if not content.missing:
         return
     names = list(dict.fromkeys(error.model for error in content.missing))
@@ -174,7 +173,7 @@ def _report_missing(document: SdfDocument, content: _Content) -> None:
         )
         sentence = document.notes.with_source(f'{len(content.missing)} <include>s: {shown} {end}')
     content.faults.append(sentence)
-    logger.error('%s; %s', sentence, without)
+    report(Fault(f'{sentence}; {without}', logging.ERROR, **content.missing[0].place))
 
 
 def _frames(world: etree._Element, content: _Content) -> Frames:

@@ -8,6 +8,7 @@ from lxml import etree
 
 from ...core import (
     AbsentError,
+    Fault,
     ModelError,
     ShapeError,
     Vector,
@@ -17,6 +18,7 @@ from ...core import (
     note,
     shortened,
     suggestion,
+    warning,
 )
 from ...description import (
     FIXED,
@@ -88,7 +90,7 @@ class LinkReader:
     ) -> None:
         self._check_mesh = check_mesh
         self._materials: dict[str, Material] = {}
-        self.notes: list[str] = []  # warnings
+        self.notes: list[Fault] = []  # warnings
         self._left_out, self._addresses = left_out, addresses
         for element in robot.iterfind('material'):
             colour = self._colour(element)
@@ -138,9 +140,9 @@ class LinkReader:
         if found is None and element.find('texture') is None and element.find('color') is None:
             note(
                 self.notes,
-                lambda: (
-                    f'{location(element)}: it has no <color> anywhere; grey is shown'
-                    f'{suggestion(name, self._materials)}'
+                lambda: warning(
+                    element,
+                    f'it has no <color> anywhere; grey is shown{suggestion(name, self._materials)}',
                 ),
             )
         return found
@@ -152,9 +154,9 @@ class LinkReader:
         try:
             rgba = numbers(colour, 'rgba', count=4)
         except ModelError as error:
-            sentence = f'{error}; the colour is ignored, as in Gazebo'
-            if sentence not in self.notes:
-                note(self.notes, lambda: sentence)
+            ignored = Fault(f'{error}; the colour is ignored, as in Gazebo', **error.place)
+            if ignored not in self.notes:
+                note(self.notes, lambda: ignored)
             return None
         red, green, blue, alpha = (min(1.0, max(0.0, value)) for value in rgba)
         return Material.plain((red, green, blue, alpha))
@@ -237,7 +239,7 @@ def _inertial(link: etree._Element) -> Inertial | None:
 
 
 def read_urdf_joint(
-    element: etree._Element, kept: Mapping[str, str], notes: list[str]
+    element: etree._Element, kept: Mapping[str, str], notes: list[Fault]
 ) -> TreeJoint:
     """Return the joint of a <joint> element.
 
@@ -261,9 +263,10 @@ def read_urdf_joint(
     if kind == FREE:
         note(
             notes,
-            lambda: (
-                f'{location(element)}: a {written} joint imposes no constraint here; '
-                f"'{shortened(child, 60)}' and its descendants move freely"
+            lambda: warning(
+                element,
+                f'a {written} joint imposes no constraint here; '
+                f"'{shortened(child, 60)}' and its descendants move freely",
             ),
         )
     if kind in (FIXED, FREE):
@@ -298,7 +301,7 @@ def _end(element: etree._Element, role: str) -> str:
     return link
 
 
-def _axis(element: etree._Element, notes: list[str]) -> Vector:
+def _axis(element: etree._Element, notes: list[Fault]) -> Vector:
     """Return the unit axis in the joint's frame; x if none is given, or only zeros."""
     axis = element.find('axis')
     if axis is None:
@@ -308,9 +311,10 @@ def _axis(element: etree._Element, notes: list[str]) -> Vector:
     if largest == 0.0:
         note(
             notes,
-            lambda: (
-                f'{location(axis)}: xyz="{axis.get("xyz")}" of <axis> has no direction, '
-                'x is used, as in Gazebo; write e.g. "0 0 1"'
+            lambda: warning(
+                axis,
+                f'xyz="{axis.get("xyz")}" of <axis> has no direction, x is used, as in Gazebo',
+                'write e.g. "0 0 1"',
             ),
         )
         return (1.0, 0.0, 0.0)
@@ -320,22 +324,24 @@ def _axis(element: etree._Element, notes: list[str]) -> Vector:
     return (x / length, y / length, z / length)
 
 
-def _not_negative(element: etree._Element | None, attribute: str, notes: list[str]) -> float:
+def _not_negative(element: etree._Element | None, attribute: str, notes: list[Fault]) -> float:
     if element is None:
         return 0.0
     value = number(element, attribute, 0.0)
     if value < 0.0:
         note(
             notes,
-            lambda: (
-                f'{location(element)}: {attribute}="{element.get(attribute)}" of <{element.tag}> is '
-                'negative; 0 is used, as it can only dissipate energy'
+            lambda: warning(
+                element,
+                f'{attribute}="{element.get(attribute)}" of '
+                f'<{element.tag}> is '
+                'negative; 0 is used, as it can only dissipate energy',
             ),
         )
     return max(0.0, value)
 
 
-def _limits(element: etree._Element, written: str, notes: list[str]) -> Limits:
+def _limits(element: etree._Element, written: str, notes: list[Fault]) -> Limits:
     """Return the limits; a negative effort or velocity means no limit."""
     limit = element.find('limit')
     if limit is None:
@@ -359,9 +365,9 @@ def _limits(element: etree._Element, written: str, notes: list[str]) -> Limits:
         low, high = upper, lower
         note(
             notes,
-            lambda: (
-                f'{location(limit)}: lower limit {high:g} is above upper limit {low:g}; '
-                'the two are swapped'
+            lambda: warning(
+                limit,
+                f'lower limit {high:g} is above upper limit {low:g}; the two are swapped',
             ),
         )
         lower, upper = low, high

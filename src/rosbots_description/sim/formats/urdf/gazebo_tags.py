@@ -7,8 +7,8 @@ applies to those of its collisions that have names of their own.
 """
 
 import re
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Literal, TypedDict
 
@@ -16,69 +16,47 @@ from lxml import etree
 
 from ...core import (
     MAX_NOTES,
-    Vector,
-    as_vector,
+    Fault,
     fault,
     line_of,
-    location,
     note,
     parse_number,
     shortened,
     suggestion,
+    warning,
 )
 from ...description import (
     FIXED,
     REVOLUTE,
     Colour,
-    Element,
-    LinkSpec,
     Material,
     PluginSpec,
-    SensorSpec,
     gazebo_material,
     material_of_colours,
 )
 from ...plugin_registry import library_remark
 from ...resources import Addresses
-from ..kinematics import LinkFlags, TreeLink
 from ..ogre import script_material
 from ..xml import (
-    ENDLESS_FRICTION,
     LeftOut,
-    bitmask,
     boolean,
     is_endless,
     read_sensor,
-    require_damping,
     scalar,
     scalar_number,
     scalar_numbers,
     tag_of,
     to_element,
 )
+from .link_tags import (
+    LINK_READERS,
+    SURFACE_NUMBERS,
+    LinkTags,
+    set_surface,
+)
 
-SurfaceNumber = Literal['mu', 'mu2', 'kp', 'kd', 'max_vel', 'min_depth', 'laser_retro']
-_SURFACE_NUMBERS: dict[str, SurfaceNumber] = {
-    'mu1': 'mu',
-    'mu2': 'mu2',
-    'kp': 'kp',
-    'kd': 'kd',
-    'maxVel': 'max_vel',
-    'minDepth': 'min_depth',
-    'laserRetro': 'laser_retro',
-}
-# The same inside <collision>, in SDF's own structure.
-_SURFACE_PATHS: dict[str, SurfaceNumber] = {
-    'surface/friction/ode/mu': 'mu',
-    'surface/friction/ode/mu2': 'mu2',
-    'surface/contact/ode/kp': 'kp',
-    'surface/contact/ode/kd': 'kd',
-    'surface/contact/ode/max_vel': 'max_vel',
-    'surface/contact/ode/min_depth': 'min_depth',
-    'laser_retro': 'laser_retro',
-}
 _NUMBER_TAGS = {
-    *_SURFACE_NUMBERS,
+    *SURFACE_NUMBERS,
     'maxContacts',
     'dampingFactor',
     'springStiffness',
@@ -105,38 +83,11 @@ _SPRING_TAGS: dict[str, Literal['stiffness', 'reference']] = {
 }
 
 
-class SurfaceTags(TypedDict, total=False):
-    """Fields of Surface that the blocks of one link set."""
-
-    mu: float
-    mu2: float
-    fdir1: Vector
-    kp: float
-    kd: float
-    max_vel: float
-    min_depth: float
-    max_contacts: int
-    collide_bitmask: int
-    category_bitmask: int
-    laser_retro: float
-
-
 class SpringTags(TypedDict, total=False):
     """Fields of JointSpec that the blocks of one joint set."""
 
     stiffness: float
     reference: float
-
-
-@dataclass
-class LinkTags:
-    """The contents of the blocks of one link; the mappings hold only what is written."""
-
-    surface: SurfaceTags = field(default_factory=SurfaceTags)
-    flags: LinkFlags = field(default_factory=LinkFlags)
-    material: Material | None = None
-    sensors: list[SensorSpec] = field(default_factory=list)
-    parts: list[Element] = field(default_factory=list)  # lights and projectors
 
 
 @dataclass
@@ -149,7 +100,7 @@ class GazeboTags:
     joints: dict[str, SpringTags] = field(default_factory=dict)
     static: bool = False
     plugins: list[PluginSpec] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)  # warnings
+    notes: list[Fault] = field(default_factory=list)  # warnings
     idle: list[str] = field(default_factory=list)  # elements without effect here
     left_out: LeftOut = field(default_factory=LeftOut)
 
@@ -165,11 +116,7 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
         if not scalar(child):
             note(
                 tags.notes,
-                partial(
-                    '{}: <{}> is empty and ignored; give it a number'.format,
-                    location(child),
-                    child.tag,
-                ),
+                partial(warning, child, f'<{child.tag}> is empty and ignored', 'give it a number'),
             )
             block.remove(child)
             continue
@@ -179,11 +126,10 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
             note(
                 tags.notes,
                 partial(
-                    '{}: of <{}> {!r} only the number {} is read, as in Gazebo'.format,
-                    location(child),
-                    child.tag,
-                    shortened(written, 60),
-                    found[0],
+                    warning,
+                    child,
+                    f'of <{child.tag}> {shortened(written, 60)!r} only the number {found[0]} is '
+                    'read, as in Gazebo',
                 ),
             )
             child.attrib.pop('value', '')
@@ -222,45 +168,17 @@ def read_gazebo_tags(
         listed = list(dict.fromkeys(unread))
         more = f' and {len(listed) - MAX_NOTES} more' if len(listed) > MAX_NOTES else ''
         tags.notes.append(
-            'not simulated in <gazebo> blocks: ' + ', '.join(listed[:MAX_NOTES]) + more
+            Fault('not simulated in <gazebo> blocks: ' + ', '.join(listed[:MAX_NOTES]) + more)
         )
     return tags
 
 
-def _unknown(block: etree._Element, reference: str, names: Collection[str]) -> str:
-    return (
-        f'{location(block)}: there is no link or joint of that name; the block is '
-        f'ignored{suggestion(reference, names)}'
+def _unknown(block: etree._Element, reference: str, names: Collection[str]) -> Fault:
+    return warning(
+        block,
+        'there is no link or joint of that name; the block is '
+        f'ignored{suggestion(reference, names)}',
     )
-
-
-def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
-    """Return the link with the shapes, flags and sensors that its blocks specify."""
-    if tags is None:
-        return link
-    spec: LinkSpec = link.spec
-    collisions = (
-        tuple(
-            replace(shape, surface=replace(shape.surface, **tags.surface))
-            for shape in spec.collisions
-        )
-        if tags.surface
-        else spec.collisions
-    )
-    visuals = (
-        tuple(replace(shape, material=tags.material) for shape in spec.visuals)
-        if tags.material
-        else spec.visuals
-    )
-    spec = replace(
-        spec,
-        collisions=collisions,
-        visuals=visuals,
-        sensors=tuple(tags.sensors),
-        parts=tuple(tags.parts),
-        **tags.flags,
-    )
-    return replace(link, spec=spec, flags=tags.flags)
 
 
 def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]) -> None:
@@ -279,9 +197,10 @@ def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
     if not filename:
         note(
             tags.notes,
-            lambda: (
-                f'{location(element)}: a <plugin> without filename is ignored; '
-                'add filename="libgazebo_ros_….so"'
+            lambda: warning(
+                element,
+                'a <plugin> without filename is ignored',
+                'add filename="libgazebo_ros_….so"',
             ),
         )
         return
@@ -295,10 +214,10 @@ def _read_link_block(
         tag = child.tag
         if tag in _KEPT:
             tags.idle.append(_mention(child))
-        if tag in _SURFACE_NUMBERS:
-            _set_surface(link, _SURFACE_NUMBERS[tag], child)
-        elif tag in _LINK_READERS:
-            _LINK_READERS[tag](child, link)
+        if tag in SURFACE_NUMBERS:
+            set_surface(link, SURFACE_NUMBERS[tag], child)
+        elif tag in LINK_READERS:
+            LINK_READERS[tag](child, link)
             if tag == 'collision':
                 kept = [child.find(path) for path in sorted(_KEPT_PATHS)]
                 tags.idle += [_mention(part) for part in kept if part is not None]
@@ -315,7 +234,7 @@ def _read_part(
 ) -> None:
     match element.tag:
         case 'sensor':
-            link.sensors.append(read_sensor(element, partial(_say, tags)))
+            link.sensors.append(read_sensor(element, partial(_warn, tags)))
         case 'plugin':
             _mention_plugin(element, tags)
         case tag:
@@ -324,94 +243,20 @@ def _read_part(
             unread.append(_mention(element))
 
 
-def _say(tags: GazeboTags, sentence: str) -> None:
-    note(tags.notes, lambda: sentence)
+def _warn(tags: GazeboTags, element: etree._Element, sentence: str) -> None:
+    note(tags.notes, partial(warning, element, sentence))
 
 
 def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     note(
         tags.notes,
-        lambda: (
-            f'{location(element)}: a <plugin> of a link is not run, as in Gazebo; '
-            f'{library_remark(filename)}; move it to a <gazebo> without reference'
+        lambda: warning(
+            element,
+            f'a <plugin> of a link is not run, as in Gazebo; {library_remark(filename)}',
+            'move it to a <gazebo> without reference',
         ),
     )
-
-
-def _set_surface(link: LinkTags, key: SurfaceNumber, element: etree._Element) -> None:
-    rubs = key in ('mu', 'mu2')
-    value = ENDLESS_FRICTION if rubs and is_endless(element) else scalar_number(element)
-    if rubs and value < 0.0:
-        value = ENDLESS_FRICTION
-    elif value < 0.0 and key in ('max_vel', 'min_depth'):
-        value = 0.0
-    elif value < 0.0 and key != 'laser_retro':
-        raise fault(element, f'<{tag_of(element)}> is {value:g}; it must not be negative')
-    link.surface[key] = value
-
-
-def _read_direction(element: etree._Element, link: LinkTags) -> None:
-    link.surface['fdir1'] = as_vector(scalar_numbers(element, 3))
-
-
-def _read_max_contacts(element: etree._Element, link: LinkTags) -> None:
-    link.surface['max_contacts'] = int(scalar_number(element))
-
-
-def _read_collide_bitmask(element: etree._Element, link: LinkTags) -> None:
-    link.surface['collide_bitmask'] = link.surface['category_bitmask'] = bitmask(element)
-
-
-def _read_category_bitmask(element: etree._Element, link: LinkTags) -> None:
-    link.surface['category_bitmask'] = bitmask(element)
-
-
-def _read_damping(element: etree._Element, link: LinkTags) -> None:
-    value = scalar_number(element)
-    require_damping(element, value)
-    link.flags |= {'linear_damping': value, 'angular_damping': value}
-
-
-def _read_self_collide(element: etree._Element, link: LinkTags) -> None:
-    link.flags['self_collide'] = boolean(element)
-
-
-def _read_gravity_off(element: etree._Element, link: LinkTags) -> None:
-    # As in Gazebo any text that does not mean false turns gravity off.
-    link.flags['gravity'] = scalar(element).lower() in ('false', 'no', '0')
-
-
-def _read_gravity(element: etree._Element, link: LinkTags) -> None:
-    link.flags['gravity'] = boolean(element)
-
-
-def _read_collision(element: etree._Element, link: LinkTags) -> None:
-    for path, key in _SURFACE_PATHS.items():
-        child = element.find(path)
-        if child is not None:
-            _set_surface(link, key, child)
-    for path, reader in (
-        ('surface/friction/ode/fdir1', _read_direction),
-        ('max_contacts', _read_max_contacts),
-        ('surface/contact/collide_bitmask', _read_collide_bitmask),
-        ('surface/contact/category_bitmask', _read_category_bitmask),
-    ):
-        child = element.find(path)
-        if child is not None:
-            reader(child, link)
-
-
-_LINK_READERS: Mapping[str, Callable[[etree._Element, LinkTags], None]] = {
-    'fdir1': _read_direction,
-    'maxContacts': _read_max_contacts,
-    'dampingFactor': _read_damping,
-    'selfCollide': _read_self_collide,
-    'self_collide': _read_self_collide,
-    'turnGravityOff': _read_gravity_off,
-    'gravity': _read_gravity,
-    'collision': _read_collision,
-}
 
 
 def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> None:
@@ -421,9 +266,11 @@ def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     if material is None:
         note(
             tags.notes,
-            lambda: (
-                f"{location(element)}: material '{shortened(script, 60)}' is neither one of Gazebo's "
-                'nor in a script along GAZEBO_RESOURCE_PATH; grey is shown; write e.g. Gazebo/Red'
+            lambda: warning(
+                element,
+                f"material '{shortened(script, 60)}' is neither one of "
+                "Gazebo's nor in a script along GAZEBO_RESOURCE_PATH; grey is shown",
+                'write e.g. Gazebo/Red',
             ),
         )
         material = Material(script=script)

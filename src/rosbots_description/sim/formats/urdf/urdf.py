@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from lxml import etree
 
-from ...core import IDENTITY, ModelError, Pose, fault, location, note, shortened
+from ...core import Fault, ModelError, Pose, fault, location, note, report, shortened
 from ...description import WORLD, LinkSpec, ModelSpec
 from ...description.inertia import impossible, possible, regularised
 from ...meshes import check_mesh
@@ -28,6 +28,7 @@ from ..xml import (
     XACRO_CURE,
     check_name,
     foreign_tags,
+    initial_pose,
     inject_namespace,
     origin,
     remove_xacro,
@@ -35,10 +36,9 @@ from ..xml import (
     tag_of,
 )
 from .elements import LinkReader, read_urdf_joint
-from .gazebo_tags import GazeboTags, SpringTags, apply_tags, read_gazebo_tags
+from .gazebo_tags import GazeboTags, SpringTags, read_gazebo_tags
+from .link_tags import apply_tags
 from .robot_control import read_robot_control
-
-logger = logging.getLogger(__name__)
 
 
 def load_urdf(
@@ -69,7 +69,7 @@ def load_urdf(
         UnknownPackage: a package:// address names a package that is not found.
         ModelError: the description cannot be simulated; the message says where and why.
 
-    What is simulated differently than written is logged as a warning, one line per kind.
+    What is simulated differently than written is reported as a warning, one per kind.
     """
     check_name(name)
     robot = parse_xml(text, source)
@@ -79,7 +79,7 @@ def load_urdf(
         substitute_in_tree(robot, find_package)
     inject_namespace(robot, robot_namespace)
     xacro = remove_xacro(robot)
-    notes = [*xacro, *foreign_tags(robot)]
+    notes = [Fault(sentence) for sentence in (*xacro, *foreign_tags(robot))]
     try:
         tree, tags = _read(robot, notes, Addresses(find_model, find_package, find_file))
     except ModelError as error:
@@ -100,24 +100,24 @@ def load_urdf(
         location=location(robot),
         control=read_robot_control(robot),
     )
-    pose = _robot_origin(robot)
-    _log(name, source, [*notes, *tags.left_out.warnings, *_reduction_notes(reduction)], tags)
+    pose = initial_pose(lambda: origin(robot), name)
+    _report(name, source, [*notes, *tags.left_out.warnings, *_reduction_notes(reduction)], tags)
     return spec, pose
 
 
-def _log(name: str, source: str, warnings: list[str], tags: GazeboTags) -> None:
-    """Tell what of a description is simulated otherwise than written, or not at all."""
-    for sentence in tags.left_out.errors():
-        logger.error("model '%s' (%s): %s", name, source, sentence)
-    for sentence in warnings:
-        logger.warning("model '%s' (%s): %s", name, source, sentence.removeprefix(f'{source}, '))
+def _report(name: str, source: str, warnings: list[Fault], tags: GazeboTags) -> None:
+    """Report what of a description is simulated otherwise than written, or not at all."""
+    faults = tags.left_out.errors()
+    faults += [replace(one, what=one.what.removeprefix(f'{source}, ')) for one in warnings]
     if tags.idle:
         idle = ', '.join(dict.fromkeys(tags.idle))
-        logger.debug("model '%s' (%s): without effect here: %s", name, source, idle)
+        faults.append(Fault(f'without effect here: {idle}', logging.DEBUG))
+    for one in faults:
+        report(replace(one, what=f"model '{name}' ({source}): {one.what}", model=name))
 
 
 def _read(
-    robot: etree._Element, notes: list[str], addresses: Addresses
+    robot: etree._Element, notes: list[Fault], addresses: Addresses
 ) -> tuple[KinematicTree, GazeboTags]:
     link_elements, joint_elements = robot.findall('link'), robot.findall('joint')
     tags = read_gazebo_tags(
@@ -142,13 +142,15 @@ def _read(
     world = tree.links[tree.root].spec if tree.root == WORLD else None
     if world and (world.collisions or world.visuals or world.inertial):
         notes.append(
-            "'world': a root of that name is the world itself; the content of the link is "
-            'not simulated, as in Gazebo'
+            Fault(
+                "'world': a root of that name is the world itself; the content of the link is "
+                'not simulated, as in Gazebo'
+            )
         )
     return tree, tags
 
 
-def _regularised_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[LinkSpec, ...]:
+def _regularised_links(links: tuple[LinkSpec, ...], notes: list[Fault]) -> tuple[LinkSpec, ...]:
     """Return the links, with zero principal moments replaced; `notes` names the changed ones."""
     links = tuple(_possible_link(link, notes) for link in links)
     turned = tuple(replace(link, inertial=regularised(link.mass_properties)) for link in links)
@@ -158,7 +160,7 @@ def _regularised_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[L
     if changed:
         note(
             notes,
-            lambda: (
+            lambda: Fault(
                 f'{_names(changed)}: an inertia of zero cannot be simulated; '
                 'that of a small sphere of the same mass is used'
             ),
@@ -166,38 +168,34 @@ def _regularised_links(links: tuple[LinkSpec, ...], notes: list[str]) -> tuple[L
     return turned
 
 
-def _possible_link(link: LinkSpec, notes: list[str]) -> LinkSpec:
+def _possible_link(link: LinkSpec, notes: list[Fault]) -> LinkSpec:
     """Return the link with a physically possible inertia; a note shows both tensors."""
     given = link.mass_properties
     inertial = possible(given)
     if inertial is given:
         return link
-    note(notes, lambda: impossible(link.name, given, inertial))
+    note(notes, lambda: Fault(impossible(link.name, given, inertial), link=link.name))
     return replace(link, inertial=inertial)
 
 
-def _reduction_notes(reduction: Reduction) -> list[str]:
+def _reduction_notes(reduction: Reduction) -> list[Fault]:
     notes = []
     if reduction.vanished:
         notes.append(
-            f'{_names(reduction.massless)}: no mass (no <inertial>, or zero); '
-            f'not simulated, as in Gazebo: {_names(reduction.vanished)}; give each an <inertial>'
+            Fault(
+                f'{_names(reduction.massless)}: no mass (no <inertial>, or zero); '
+                f'not simulated, as in Gazebo: {_names(reduction.vanished)}',
+                cure='give each an <inertial>',
+            )
         )
     if reduction.conflicts:
         notes.append(
-            f'{_names(reduction.conflicts)}: gravity, selfCollide or damping set for a reduced '
-            'link (child of a fixed joint) applies to the link it is merged into, as in Gazebo'
+            Fault(
+                f'{_names(reduction.conflicts)}: gravity, selfCollide or damping set for a reduced '
+                'link (child of a fixed joint) applies to the link it is merged into, as in Gazebo'
+            )
         )
     return notes
-
-
-def _robot_origin(robot: etree._Element) -> Pose:
-    """Return the pose directly below <robot>; a malformed one is ignored, as upstream."""
-    try:
-        return origin(robot)
-    except ModelError as error:
-        logger.error('%s; the pose is ignored, and the model is at its initial pose', error)
-        return IDENTITY
 
 
 def _quoted(links: tuple[str, ...]) -> list[str]:

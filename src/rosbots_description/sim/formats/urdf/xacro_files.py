@@ -1,6 +1,5 @@
 """Expand xacro files with the module `xacro`, if it is installed; ROS is not needed."""
 
-import logging
 import os
 import re
 from collections.abc import Callable, Mapping
@@ -8,11 +7,9 @@ from contextlib import suppress
 from functools import partial
 from types import ModuleType
 
-from ...core import ModelError, printable, shortened, suggestion
+from ...core import Fault, ModelError, printable, report, shortened, suggestion
 from ...resources import FindPackage
 from ...xacro_module import import_xacro
-
-logger = logging.getLogger(__name__)
 
 _SUBSTITUTION = re.compile(r'\$\((find|arg|env|optenv|dirname|cwd)\b([^()]*)\)')
 
@@ -66,13 +63,8 @@ def expand_xacro(path: str, arguments: Mapping[str, str], find_package: FindPack
         vars(xacro)['eval_extension'] = resolve
     for name in arguments:
         if name not in known.asked:
-            logger.warning(
-                '%s',
-                printable(
-                    f"{path}: there is no xacro argument '{shortened(name)}'"
-                    f'{suggestion(name, known.asked)}'
-                ),
-            )
+            what = f"{path}: there is no xacro argument '{shortened(name)}'"
+            report(Fault(printable(what + suggestion(name, known.asked))))
     return text
 
 

@@ -1,10 +1,23 @@
 """What a model is to have and stands without: shapes that cannot be made, parts that nobody has."""
 
+import logging
 from itertools import islice
 
 from lxml import etree
 
-from ...core import MAX_NOTES, ModelError, ShapeError, line_of, location, owner, shortened
+from ...core import (
+    MAX_NOTES,
+    Fault,
+    FaultPlace,
+    ModelError,
+    ShapeError,
+    line_of,
+    note,
+    owner,
+    place,
+    shortened,
+    warning,
+)
 
 
 class LeftOut:
@@ -17,36 +30,38 @@ class LeftOut:
 
     def __init__(self) -> None:
         self.parts: list[str] = []
-        self.warnings: list[str] = []
-        self._meshes: dict[str, list[str]] = {}  # fault of a file -> elements that use it
-        self._faults: list[str] = []
+        self.warnings: list[Fault] = []
+        # Fault of a file -> where it is used first, and all elements that use it.
+        self._meshes: dict[str, tuple[FaultPlace, list[str]]] = {}
+        self._faults: list[Fault] = []
 
     def shape(self, element: etree._Element, error: ShapeError) -> None:
         """Record a <collision> or <visual> without a shape."""
         if error.uri:
             said = error.uri in str(error)
             written = '' if said else f" (written '{shortened(error.uri)}')"
-            users = self._meshes.setdefault(f'{error}{written}', [])
+            _, users = self._meshes.setdefault(f'{error}{written}', (place(element), []))
             users.append(f'{element.tag} of {owner(element)} ({line_of(element)})')
             self.parts.append(f"mesh '{shortened(error.uri, 100)}'")
             return
-        if len(self.warnings) < MAX_NOTES:
-            self.warnings.append(f'{location(element)}: {error}; the {element.tag} is left out')
+        note(self.warnings, lambda: warning(element, f'{error}; the {element.tag} is left out'))
         self.parts.append(f'{element.tag} of {owner(element)}')
 
     def part(self, called: str, error: ModelError) -> None:
         """Record a part of a model that refers to something that does not exist."""
         if len(self._faults) < MAX_NOTES:
-            self._faults.append(f'{error}; {called} is left out')
+            self._faults.append(
+                Fault(f'{error}; {called} is left out', logging.ERROR, **error.place)
+            )
         self.parts.append(called)
 
-    def errors(self) -> list[str]:
-        """Return the messages about missing parts; one for each mesh, with all its users."""
+    def errors(self) -> list[Fault]:
+        """Return the errors about missing parts; one for each mesh, with all its users."""
         return [
             *self._faults,
             *(
-                f'{reason}; left out: {listed(users)}'
-                for reason, users in islice(self._meshes.items(), MAX_NOTES)
+                Fault(f'{reason}; left out: {listed(users)}', logging.ERROR, **first)
+                for reason, (first, users) in islice(self._meshes.items(), MAX_NOTES)
             ),
         ]
 

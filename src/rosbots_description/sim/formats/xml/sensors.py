@@ -8,7 +8,6 @@ from ...core import (
     IDENTITY,
     Pose,
     from_rpy,
-    location,
     parse_number,
     parse_numbers,
     shortened,
@@ -16,7 +15,7 @@ from ...core import (
 from ...description import PluginSpec, SensorSpec
 from .values import boolean, scalar, to_element
 
-Complain = Callable[[str], object]
+Complain = Callable[[etree._Element, str], object]
 
 
 def read_sensor(
@@ -25,7 +24,7 @@ def read_sensor(
     """Return the sensor of a <sensor>; one number that is none costs no sensor.
 
     Args:
-        complain: takes a sentence for each thing that is done differently than written.
+        complain: takes the element and a sentence for each thing that is done differently.
         pose: in the link's frame, where the caller knows it; else the element's own counts.
     """
     plugins = []
@@ -35,8 +34,9 @@ def read_sensor(
             plugins.append(PluginSpec(child.get('name', ''), filename, to_element(child)))
         else:
             complain(
-                f'{location(child)}: a <plugin> without filename is ignored; '
-                'filename="libgazebo_ros_….so" picks the code'
+                child,
+                'a <plugin> without filename is ignored; '
+                'filename="libgazebo_ros_….so" picks the code',
             )
     return SensorSpec(
         name=element.get('name', ''),
@@ -59,8 +59,9 @@ def _own_pose(element: etree._Element, complain: Complain) -> Pose:
     numbers = parse_numbers(text, 6)
     if numbers is None:
         complain(
-            f"{location(child)}: <pose> is '{shortened(text, 60)}'; it takes six finite "
-            "numbers. The sensor is at its link's origin"
+            child,
+            f"<pose> is '{shortened(text, 60)}'; it takes six finite "
+            "numbers. The sensor is at its link's origin",
         )
         return IDENTITY
     x, y, z, *angles = numbers
@@ -74,8 +75,9 @@ def _rate(element: etree._Element, complain: Complain) -> float:
     rate = parse_number(scalar(child))
     if rate is None:
         complain(
-            f"{location(child)}: <update_rate> is '{shortened(scalar(child), 60)}'; it takes "
-            'a finite number [Hz]. The sensor measures in every step'
+            child,
+            f"<update_rate> is '{shortened(scalar(child), 60)}'; it takes "
+            'a finite number [Hz]. The sensor measures in every step',
         )
         return 0.0
     return max(0.0, rate)

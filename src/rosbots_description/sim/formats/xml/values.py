@@ -1,8 +1,9 @@
 """Read names, numbers, poses and plain element trees from parsed XML."""
 
+import logging
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 from lxml import etree
 
@@ -13,6 +14,7 @@ from ...core import (
     MAX_MASS,
     MIN_MASS,
     ZERO,
+    Fault,
     ModelError,
     Pose,
     ShapeError,
@@ -21,6 +23,7 @@ from ...core import (
     fault,
     from_rpy,
     parse_numbers,
+    report,
 )
 from ...description import Element
 
@@ -258,6 +261,16 @@ def origin(element: etree._Element) -> Pose:
     position = vector(child, 'xyz', ZERO)
     require_near(child, 'xyz', position)
     return Pose(position, from_rpy(*vector(child, 'rpy', ZERO)))
+
+
+def initial_pose(read: Callable[[], Pose], model: str) -> Pose:
+    """Return the pose of a model that `read` returns; a malformed one is ignored, as upstream."""
+    try:
+        return read()
+    except ModelError as error:
+        what = f'{error}; the pose is ignored, and the model is at its initial pose'
+        report(Fault(what, logging.ERROR, **(error.place | {'model': model})))
+        return IDENTITY
 
 
 def to_element(element: etree._Element) -> Element:

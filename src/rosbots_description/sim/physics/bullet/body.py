@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from ...core import Pose, Quaternion, Vector
 from ...description import Collision
+from .integral_action import Integral
 
 
 @dataclass(frozen=True)
@@ -92,6 +93,7 @@ class Body:
         # Links that feel no gravity: PyBullet's body and index, and the mass [kg].
         self.weightless: list[tuple[int, int, float]] = []
         self.motors: dict[str, tuple[float, float]] = {}  # target velocity, effort limit by joint
+        self.integrals: dict[str, Integral] = {}  # of motors, by joint
         self.masses: dict[int, Masses] = {}  # of moving bodies, as described
         self.mass_scale = 1.0
         self.frictions: dict[Place, float] = {}  # of each contact part, as described

@@ -15,6 +15,7 @@ from .contact_stiffness import contact_spring, is_rigid, parting_rate
 from .friction_axes import ISOTROPIC
 from .friction_pairs import FrictionPairs, Side
 from .generated_urdf import AUXILIARY_MASS, Tree, filtered_links
+from .sleep import rest_for_good
 from .springs import compliance
 from .tuning import Tuning
 
@@ -131,7 +132,10 @@ class BodyMaker:
             if not link.gravity and not (tree.fixed_base and i == 0):
                 mass = link.inertial.mass if link.inertial else 0.0
                 body.weightless.append((number, part.index, mass))
-        if not tree.is_static:
+        if tree.is_static:
+            for still in numbers:
+                rest_for_good(still, self._client)
+        else:
             body.masses[number] = _masses(tree, body, compiled.moments)
         for other, one in zip(also, compiled.bodies[1:], strict=True):
             self._set_contact_part(

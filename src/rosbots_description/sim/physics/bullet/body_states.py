@@ -14,7 +14,8 @@ from .body_maker import ANY_SPEED
 from .client import pybullet
 from .exact_poses import ExactPlacement
 from .fast_rotation import FastBodies
-from .solver_iterations import Motor
+from .integral_action import AT_REST, integral
+from .sleep import Sleep
 
 # Forces are clamped to this value. The squares of greater ones overflow to NaN, which spreads
 # through contacts to other bodies, first of all to the ground.
@@ -26,13 +27,14 @@ AppliedForce = tuple[Callable[..., None], tuple[Any, ...]]  # method, arguments
 class BodyStates:
     """State of the bodies of one PyBullet world; see `PhysicsEngine`."""
 
-    placements = 0
+    placements = advances = 0
 
     def __init__(self, client: int) -> None:
         """Work in the world of that PyBullet client."""
         self._client = client
         self._enabled = True
         self._fast = FastBodies(client)
+        self._sleep = Sleep(client, self._make_void_step)
         self._driven: dict[Body, None] = {}  # bodies with motors, in the order they were added
         self._applied_forces: list[AppliedForce] = []  # since the last step
         # Joint states read since the last step, by PyBullet's body, in the order of Body.indices:
@@ -49,6 +51,7 @@ class BodyStates:
 
     def set_motion(self, body: Body, motion: Motion) -> None:
         """Set the motion of a model to one recorded from a model of the same links and joints."""
+        self._sleep.wake_all()
         self._joint_readings.clear()
         self.set_root_poses(body, {link: pose for link, (pose, _) in motion.roots.items()})
         for link, (_, twist) in motion.roots.items():
@@ -128,6 +131,7 @@ class BodyStates:
         Velocities are kept, which PyBullet would zero.
         """
         self.placements += 1
+        self._sleep.wake_all()
         for link, pose in poses.items():
             part = body.parts[link]
             near = Pose(_at_most(pose.position, MAX_COORDINATE), pose.orientation)
@@ -140,6 +144,7 @@ class BodyStates:
 
     def settle_poses(self, body: Body) -> dict[str, Pose]:
         """Move roots by rounding errors so that `match_poses` restores all links; return axes."""
+        self._sleep.wake_all()
         axes = {}
         for root in body.roots:
             placement = self._placement(body, root, body.parts)
@@ -152,6 +157,7 @@ class BodyStates:
     def match_poses(self, body: Body, axes: Mapping[str, Pose], links: Mapping[str, Pose]) -> None:
         """Move roots by rounding errors so that principal axes and links are these again."""
         self.placements += 1
+        self._sleep.wake_all()
         for root in (root for root in body.roots if root in axes):
             mine = [pose for name, pose in links.items() if self._is_of(body, name, root)]
             self._placement(body, root, links).match(axes[root], mine)
@@ -174,6 +180,7 @@ class BodyStates:
         if link in body.fixed_roots:
             return
         part = body.parts[link]
+        self._sleep.wake(part.body)
         com = rotate(self.link_pose(body, link).orientation, part.com_in_origin.position)
         angular = _at_most(twist.angular, ANY_SPEED)
         linear = add(_at_most(twist.linear, ANY_SPEED), cross(angular, com))
@@ -213,6 +220,7 @@ class BodyStates:
     ) -> None:
         """Put a joint at `position` [rad or m], moving at `velocity` [rad/s or m/s]."""
         self.placements += 1
+        self._sleep.wake_all()
         self._joint_readings.clear()
         number, index = body.joints[joint]
         pybullet.resetJointState(number, index, position, velocity, self._client)
@@ -226,24 +234,35 @@ class BodyStates:
         """Drive a joint towards `velocity` [rad/s or m/s] with at most `effort` [N m or N]."""
         if body.motors.get(joint) == (velocity, effort):
             return  # unchanged
+        self._sleep.wake(body.joints[joint][0])
         velocity = max(-ANY_SPEED, min(ANY_SPEED, velocity))
+        if velocity * body.motors.get(joint, (0.0, 0.0))[0] <= 0.0:
+            body.integrals.pop(joint, None)  # the load turns with the direction
         body.motors[joint] = (velocity, effort)
         self._driven[body] = None
+        self._apply_motor(body, joint)
+
+    def _apply_motor(self, body: Body, joint: str) -> None:
+        velocity, effort = body.motors[joint]
         pybullet.setJointMotorControl2(
             *body.joints[joint],
             pybullet.VELOCITY_CONTROL,
-            targetVelocity=velocity,
+            targetVelocity=velocity + body.integrals.get(joint, AT_REST).offset,
             force=effort,
             physicsClientId=self._client,
         )
 
-    def _motors(self) -> Iterator[Motor]:
-        """Yield all motors: velocity and its target, effort and its limit."""
+    def _correct_motors(self) -> None:
+        """Look at all motors, and correct what they get by the integral of their errors."""
         for body in self._driven:
             for joint, (target, limit) in body.motors.items():
                 if limit > 0.0:
                     _, velocity, _, effort = self._joint_reading(body, joint)
-                    yield velocity, target, effort, limit
+                    before = body.integrals.get(joint, AT_REST)
+                    now = integral(before, target, velocity, effort / limit)
+                    body.integrals[joint] = now
+                    if now.offset != before.offset:
+                        self._apply_motor(body, joint)
 
     def apply_wrench(
         self, body: Body, link: str, force: Vector, torque: Vector, place: Vector | None = None
@@ -256,6 +275,7 @@ class BodyStates:
         if not self._enabled:
             return  # PyBullet would accumulate them until its next step
         part = body.parts[link]
+        self._sleep.wake(part.body)
         if place is None:
             place = compose(self.link_pose(body, link), part.com_in_origin).position
         world, client = pybullet.WORLD_FRAME, self._client
@@ -269,6 +289,7 @@ class BodyStates:
         """Apply `effort` [N m or N] to a joint in the next step, added to its motor's."""
         if not self._enabled:
             return
+        self._sleep.wake(body.joints[joint][0])
         effort = max(min(effort, _ANY_FORCE), -_ANY_FORCE)
         pybullet.setJointMotorControl2(
             *body.joints[joint], pybullet.TORQUE_CONTROL, force=effort, physicsClientId=self._client
@@ -276,8 +297,27 @@ class BodyStates:
         self._applied_forces.append((self.apply_joint_effort, (body, joint, effort)))
         self._fast.allow_external_work(body.joints[joint][0])
 
+    def _make_void_step(self) -> None:
+        """Make a step of PyBullet that is undone, so that it wakes bodies before the next one."""
+        for body in self._driven:
+            for joint in body.joints:
+                self._joint_reading(body, joint)  # PyBullet does not restore efforts
+        state = pybullet.saveState(physicsClientId=self._client)
+        pybullet.stepSimulation(self._client)
+        pybullet.restoreState(stateId=state, physicsClientId=self._client)
+        pybullet.removeState(state, physicsClientId=self._client)
+        applied = [*self._applied_forces]
+        self._applied_forces.clear()
+        for call, arguments in applied:
+            call(*arguments)
+
     def measure_reaction(self, body: Body, joint: str, wanted: bool = True) -> None:
         """Enable or disable the measurement of a joint's reaction."""
+        self._sleep.wake_all()
+        if wanted:
+            self._sleep.measured.add(body.joints[joint])
+        else:
+            self._sleep.measured.discard(body.joints[joint])
         self._joint_readings.clear()
         pybullet.enableJointForceTorqueSensor(*body.joints[joint], int(wanted), self._client)
 

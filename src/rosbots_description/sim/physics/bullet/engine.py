@@ -21,8 +21,8 @@ from .contact_stiffness import overlap_share
 from .contacts import ContactQueries
 from .friction_axes import can_slip
 from .friction_slip import SlippingLinks
+from .integral_action import PERIOD
 from .snapshot import BulletSnapshot, Snapshots
-from .solver_iterations import CHECK, SolverEffort
 from .springs import Springs
 from .stop_reaction import is_at_stop, links_beyond, with_stop
 from .tuning import Tuning
@@ -49,8 +49,7 @@ class Engine(BodyStates):
         super().__init__(pybullet.connect(pybullet.DIRECT))
         self._maker = BodyMaker(self._client, self._tuning)
         self._step = pybullet.stepSimulation
-        self._effort = SolverEffort(self._set_iterations)
-        self._until_check = CHECK  # steps
+        self._until_look = PERIOD  # steps
         self._bodies: dict[Body, None] = {}  # in the order they were added
         self._springs = Springs(self._client)
         self._weightless: list[Body] = []  # bodies with links without gravity
@@ -73,6 +72,7 @@ class Engine(BodyStates):
 
     def apply(self, physics: PhysicsSettings) -> None:
         """Apply these settings from the next step on."""
+        self._sleep.wake_all()
         self._gravity = physics.gravity
         self._cone = physics.friction_cone or self._tuning.friction_cone
         self._maker.set_step_size(physics.step_size)
@@ -87,12 +87,13 @@ class Engine(BodyStates):
             collisionFilterMode=0,  # a pair collides if both masks allow it
             enableFileCaching=0,  # file names are reused with other contents
             minimumSolverIslandSize=1,  # islands converge independently
+            numSolverIterations=max(1, round(physics.sor_pgs_iters * self._tuning.iterations)),
             solverResidualThreshold=self._tuning.residual,
             jointFeedbackMode=pybullet.JOINT_FEEDBACK_IN_JOINT_FRAME,
             physicsClientId=self._client,
         )
-        self._effort.start(max(1, round(physics.sor_pgs_iters * self._tuning.iterations)))
         self._physics = physics
+        self._sleep.set_rest(self._tuning.rest / physics.step_size)
         self._batches = _exact_batches(physics.step_size, _MAX_BATCH)
 
     def _friction_ratio(self, direction: Vector) -> float:
@@ -113,32 +114,40 @@ class Engine(BodyStates):
         )
         self._bodies.clear()
         self._applied_forces.clear()
+        self._sleep.clear()
         self._queries.clear()
         self._fast.clear()
         self._springs.clear()
         self._weightless.clear()
         self._driven.clear()
-        self._until_check = CHECK
+        self._until_look = PERIOD
         self._slipping.clear()
         self._joint_readings.clear()
         self._leaked = 0
         self.apply(self._physics)
 
     def step(self, steps: int) -> None:
-        """Advance physics by whole steps."""
-        fast = self._fast
-        while steps > 0 and self._enabled:
+        """Advance physics by whole steps; while everything sleeps, nothing changes in them."""
+        fast, sleep = self._fast, self._sleep
+        while steps > 0 and self._enabled and not sleep.is_complete:
             if not fast.until_check:
                 fast.update()
-            run = min(steps, self._until_check, fast.until_check)
+            run = min(steps, self._until_look, fast.until_check, sleep.until_look)
             self._step_uniform(run)
+            self.advances += 1
             self._joint_readings.clear()
             steps -= run
             fast.until_check -= run
-            self._until_check -= run
-            if not self._until_check:
-                self._until_check = CHECK
-                self._effort.update(self._motors())
+            self._until_look -= run
+            if not self._until_look:
+                self._until_look = PERIOD
+                self._correct_motors()
+            sleep.until_look -= run
+            if not sleep.until_look:
+                sleep.look(
+                    self._bodies,
+                    {body for body, _, (_, slips) in self._slipping.links if any(slips)},
+                )
 
     def _step_uniform(self, steps: int) -> None:
         """Advance by steps between two checks for fast bodies."""
@@ -187,6 +196,7 @@ class Engine(BodyStates):
 
     def add(self, model: BulletModel, pose: Pose) -> Body:
         """Add a model to the world with its frame at `pose` and all joints at zero."""
+        self._sleep.wake_all()
         body, spec = Body(model.size), model.spec
         try:
             for tree in model.trees:
@@ -200,6 +210,7 @@ class Engine(BodyStates):
                 self.set_joint_motor(body, joint.name, 0.0, joint.friction)
         if body.weightless:
             self._weightless.append(body)
+        self._sleep.add(body.masses)
         self._fast.add(body.masses)
         self._springs.add(body.masses)
         self._slipping.add(body, spec)
@@ -210,6 +221,7 @@ class Engine(BodyStates):
 
     def remove(self, body: Body) -> None:
         """Remove a model from the world."""
+        self._sleep.wake_all()
         self._joint_readings.clear()
         if body in self._weightless:
             self._weightless.remove(body)
@@ -217,6 +229,7 @@ class Engine(BodyStates):
         self._queries.remove(body)
         self._bodies.pop(body, None)
         self._driven.pop(body, None)
+        self._sleep.remove(body.bodies)
         self._fast.remove(body.bodies)
         self._springs.remove(body.bodies)
         self._leaked += body.size
@@ -226,6 +239,7 @@ class Engine(BodyStates):
         """Multiply the described masses and moments of inertia of a model by a factor."""
         if factor == body.mass_scale:
             return
+        self._sleep.wake_all()
         body.mass_scale = factor
         scaled = {number: masses.scaled(factor) for number, masses in body.masses.items()}
         self._maker.set_masses(scaled)
@@ -236,6 +250,7 @@ class Engine(BodyStates):
     def scale_friction(self, body: Body, link: str, factor: float) -> None:
         """Multiply the friction of each contact of a link by a factor."""
         if factor != body.friction_scales.get(link, 1.0):
+            self._sleep.wake_all()
             self._maker.scale_link_friction(body, link, factor)
 
     def overlap(self, one: Body, other: Body) -> float:
@@ -261,6 +276,7 @@ class Engine(BodyStates):
         self, body: Body, link: str, axis: Vector, compliances: tuple[float, float]
     ) -> None:
         """Set the slip compliance of a link; see `PhysicsEngine`."""
+        self._sleep.wake_all()
         self._slipping.set(body, link, (axis, compliances))
 
     def _update_slip(self, body: Body, link: str, axle: Vector, slips: tuple[float, float]) -> None:
@@ -304,7 +320,7 @@ class Engine(BodyStates):
             for joint, (_, effort) in body.motors.items()
             if not effort
         ]
-        snapshot = self._snapshots.take([*self._bodies], self._moving(), idle, self._save_state)
+        snapshot = self._snapshots.take([*self._bodies], idle, self._save_state)
         self._restore_state(snapshot.engine_state)
         return snapshot
 
@@ -320,11 +336,7 @@ class Engine(BodyStates):
             self.scale_mass(body, mass)
             for link in {**body.friction_scales, **friction}:
                 self.scale_friction(body, link, friction.get(link, 1.0))
-        self._restore_state(self._snapshots.restore(snapshot, self._moving()))
-
-    def _moving(self) -> list[int]:
-        """Return PyBullet's numbers of all moving bodies."""
-        return [number for body in self._bodies for number in body.masses]
+        self._restore_state(self._snapshots.restore(snapshot))
 
     def _save_state(self) -> tuple[Any, ...]:
         """Return all state that PyBullet does not hold or does not restore."""
@@ -333,37 +345,36 @@ class Engine(BodyStates):
                 self._joint_reading(body, joint)  # PyBullet does not restore efforts
         return (
             self._physics,
-            self._until_check,
-            self._effort.save_state(),
+            self._until_look,
             self._fast.save_state(),
+            self._sleep.save_state(),
             self._slipping.save_state(),
             list(self._applied_forces),
             dict(self._joint_readings),
-            [(body, dict(body.motors)) for body in self._driven],
+            [(body, dict(body.motors), dict(body.integrals)) for body in self._driven],
             [(body, (body.mass_scale, dict(body.friction_scales))) for body in self._bodies],
         )
 
     def _restore_state(self, saved: tuple[Any, ...]) -> None:
         """Restore noted state after PyBullet's own has been restored."""
         self.placements += 1
-        physics, until_check, effort, fast, slipping, applied, readings, motors, _ = saved
+        physics, until_check, fast, sleep, slipping, applied, readings, motors, _ = saved
         if physics != self._physics:
             self.apply(physics)
-        self._driven = dict.fromkeys(body for body, _ in motors)
-        for body, targets in motors:
+        self._driven = dict.fromkeys(body for body, *_ in motors)
+        for body, targets, integrals in motors:
+            body.integrals = dict(integrals)
             for joint, target in targets.items():
-                self.set_joint_motor(body, joint, *target)
+                body.motors[joint] = target
+                self._apply_motor(body, joint)
         self._applied_forces.clear()
         for call, arguments in applied:
             call(*arguments)
         self._joint_readings = dict(readings)
-        self._until_check = until_check
-        self._effort.restore_state(effort)
+        self._until_look = until_check
         self._fast.restore_state(fast)
         self._slipping.restore_state(slipping)
-
-    def _set_iterations(self, count: int) -> None:
-        pybullet.setPhysicsEngineParameter(numSolverIterations=count, physicsClientId=self._client)
+        self._sleep.restore_state(sleep)
 
     def _cancel_weight(self) -> None:
         """Cancel the weight of links without gravity; PyBullet has one gravity for all links."""

@@ -7,8 +7,7 @@ state: PyBullet sorts the pairs from the first snapshot on, and all bodies are m
 moment. What PyBullet does not save, such as motors, is recorded separately.
 
 For bodies of several shapes PyBullet mixes up the owners of contact points, so that a snapshot
-changes the motion of the article's robot by up to 0.1 um/step. Bodies of one shape are unaffected,
-unless the robot's motors change the number of solver iterations, which is common to all bodies.
+changes the motion of the article's robot by up to 0.1 um/step. Bodies of one shape are unaffected.
 """
 
 import weakref
@@ -16,7 +15,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...core import SimError
+from .body import Body
 from .client import pybullet
+from .sleep import rest_for_good, wake
 
 # A collision detection drops a tenth of the stale pairs, at least one: 80 of them drop 4000.
 _PASSES = 80
@@ -31,7 +32,7 @@ class BulletSnapshot:
     """State of a PyBullet world and more of the engine; bodies are compared by identity."""
 
     def __init__(
-        self, state: int, bodies: Sequence[Any], idle: Joints, engine_state: tuple[Any, ...]
+        self, state: int, bodies: Sequence[Body], idle: Joints, engine_state: tuple[Any, ...]
     ) -> None:
         self.state, self.bodies, self.idle = state, tuple(bodies), idle
         self.engine_state = engine_state
@@ -54,16 +55,14 @@ class Snapshots:
 
     def take(
         self,
-        bodies: Sequence[Any],
-        moving: Sequence[int],
+        bodies: Sequence[Body],
         idle: Joints,
         save_state: Callable[[], tuple[Any, ...]],
     ) -> BulletSnapshot:
         """Return a snapshot.
 
         Args:
-            bodies: those that must exist when it is restored.
-            moving: PyBullet's numbers of the moving bodies.
+            bodies: all, which must exist when it is restored.
             idle: joints whose motors are off.
             save_state: returns the state of the engine that PyBullet does not save.
         """
@@ -73,10 +72,10 @@ class Snapshots:
         snapshot = BulletSnapshot(state, bodies, idle, save_state())
         self._states.add(snapshot.state)
         weakref.finalize(snapshot, _drop, self._states, snapshot.state, client).atexit = False
-        self._restore(snapshot, moving)
+        self._restore(snapshot)
         return snapshot
 
-    def require(self, snapshot: BulletSnapshot, bodies: Sequence[Any]) -> None:
+    def require(self, snapshot: BulletSnapshot, bodies: Sequence[Body]) -> None:
         """Raise a `SimError` if the bodies are not those of a snapshot."""
         same = len(bodies) == len(snapshot.bodies) and all(
             a is b for a, b in zip(bodies, snapshot.bodies, strict=True)
@@ -87,25 +86,34 @@ class Snapshots:
                 'between taking a snapshot and going back to it; take a new one'
             )
 
-    def restore(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> tuple[Any, ...]:
+    def restore(self, snapshot: BulletSnapshot) -> tuple[Any, ...]:
         """Restore PyBullet's part of a snapshot, and return the engine's own."""
-        self._restore(snapshot, moving)
+        self._restore(snapshot)
         return snapshot.engine_state
 
-    def _restore(self, snapshot: BulletSnapshot, moving: Sequence[int]) -> None:
+    def _restore(self, snapshot: BulletSnapshot) -> None:
         client, put = self._client, pybullet.resetBasePositionAndOrientation
+        moving = [number for body in snapshot.bodies for number in body.masses]
+        numbers = [number for body in snapshot.bodies for number in body.bodies]
+        static = sorted({*numbers} - {*moving})
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
         # A motor that was switched off still reports its last effort.
         self._set_effort(snapshot.idle, _NEGLIGIBLE_EFFORT)
+        for number in static:
+            wake(number, client)  # else its bounding box stays where it was
         for attempt in range(_PASSES):
             for i, number in enumerate(moving if attempt < 2 else moving[:1]):
                 # PyBullet drops pairs only after something has moved.
                 position = (_SPACING * (i + 1), _SPACING * (1 + attempt % 2), _SPACING)
                 put(number, position, _NO_ROTATION, client)
+                if not attempt:
+                    wake(number, client)
             if attempt:
                 pybullet.performCollisionDetection(client)
             else:
                 pybullet.stepSimulation(client)  # clears applied forces
+        for number in static:
+            rest_for_good(number, client)
         self._set_effort(snapshot.idle, 0.0)
         pybullet.restoreState(stateId=snapshot.state, physicsClientId=client)
 

@@ -1,12 +1,11 @@
 """Base classes of the drives: velocity command, frames and outputs."""
 
-import logging
 import math
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from ...core import Pose, compose, inverse
+from ...core import Fault, Pose, compose, inverse, report
 from ...runtime import FrameTransform, JointStates, Odometry, Output
 from ..base import PeriodicPlugin
 from ..parameters import Params
@@ -14,8 +13,6 @@ from .odometry import Encoders, world_odometry
 
 if TYPE_CHECKING:
     from ...runtime import Joint
-
-logger = logging.getLogger(__name__)
 
 ENCODER, WORLD = 'encoder', 'world'
 NO_VARIANCES = (0.0,) * 6
@@ -163,9 +160,6 @@ def reads_encoders(params: Params) -> bool:
     # Upstream's warning shows the enumeration value of `world`.
     text = params.read('odometrySource', WORLD, shown='1').lower()
     if text not in (ENCODER, WORLD, '0', '1'):
-        logger.warning(
-            "%s<odometrySource> is '%s', which is neither encoder nor world; default is world",
-            params.prefix,
-            text,
-        )
+        what = f"{params.prefix}<odometrySource> is '{text}', which is neither encoder nor world"
+        report(Fault(f'{what}; default is world'))
     return text in (ENCODER, '0')

@@ -3,18 +3,15 @@
 Behaviour, defaults and timing are those of libgazebo_ros_diff_drive.so in gazebo_ros_pkgs 2.9.2.
 """
 
-import logging
 import math
 from collections.abc import Iterable
 
-from ...core import Pose, Twist
+from ...core import Fault, Pose, Twist, report
 from ...plugin_registry import register
 from ...runtime import FrameTransform, JointStates, Odometry
 from ..wheel_geometry import drives_towards_x, radius_of, same_direction, track_of
 from .base import WheeledDrive, reads_encoders
 from .odometry import Encoders
-
-logger = logging.getLogger(__name__)
 
 RAMP_REACHED = 0.01  # [m/s] distance of the rim speed from its target at which a ramp ends
 DRAGGED = 0.015  # relative speed loss of a robot that drags a caster (doc/physics.md)
@@ -110,19 +107,15 @@ class DiffDrive(WheeledDrive):
         wide = self.wheel_separation / track
         turn = forward * wide
         if abs(forward - 1.0) > TOLERATED or abs(wide - 1.0) > TOLERATED:
-            logger.warning(
-                '%swheelDiameter %g m and wheelSeparation %g m contradict the collision geometry '
-                '(%.3g m and %.3g m): expect the robot to drive at %.2f of the commanded speed and '
-                'to turn at %.2f of the commanded rate, or at %.2f and %.2f if it drags a caster',
-                self.log_prefix,
-                self.wheel_diameter,
-                self.wheel_separation,
-                2.0 * radius,
-                track,
-                forward,
-                turn,
-                forward * (1.0 - DRAGGED),
-                turn * (1.0 - DRAGGED),
+            report(
+                Fault(
+                    f'{self.log_prefix}wheelDiameter {self.wheel_diameter:g} m and wheelSeparation '
+                    f'{self.wheel_separation:g} m contradict the collision geometry '
+                    f'({2.0 * radius:.3g} m and {track:.3g} m): expect the robot to drive at '
+                    f'{forward:.2f} of the commanded speed and to turn at {turn:.2f} of the '
+                    f'commanded rate, or at {forward * (1.0 - DRAGGED):.2f} and '
+                    f'{turn * (1.0 - DRAGGED):.2f} if it drags a caster'
+                )
             )
 
     def _warn_sides(self) -> None:
@@ -140,4 +133,4 @@ class DiffDrive(WheeledDrive):
             if not drives_towards_x(left):
                 faults.append('drive backwards when asked to drive on; reverse the joint axes')
         if faults:
-            logger.warning('%sthis robot will %s', self.log_prefix, '. It will '.join(faults))
+            report(Fault(f'{self.log_prefix}this robot will {". It will ".join(faults)}'))

@@ -35,10 +35,11 @@ class ForceBasedMove(Drive):
         """Read all tags with upstream's defaults and in upstream's order; find the link."""
         self.read_frames('base_footprint')
         self._pushed, _ = self.link('robotBaseFrame', self.params.string('robotBaseFrame'))
+        # [N s/m], [N s/m], [N m s/rad]
         self._gains = tuple(
             self._gain(f'{axis}_velocity_p_gain', default)
             for axis, default in (('x', 10000.0), ('y', 10000.0), ('yaw', 100.0))
-        )  # [N s/m], [N s/m], [N m s/rad]
+        )
         rate = self.params.rate('odometryRate', 20.0)  # 0 for none
         self.set_rate(rate)
         self.add_odometry(rate > 0.0, self.params.read('publishOdometryTf', True) and rate > 0.0)

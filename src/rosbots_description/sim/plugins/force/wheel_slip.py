@@ -9,7 +9,7 @@ import logging
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...core import PluginError, parse_number
+from ...core import Fault, PluginError, parse_number, report
 from ...description import Element
 from ...plugin_registry import register
 from ..base import PeriodicPlugin
@@ -17,8 +17,6 @@ from ..wheel_geometry import radius_of
 
 if TYPE_CHECKING:
     from ...runtime import Joint
-
-logger = logging.getLogger(__name__)
 
 NUMBERS = (
     'slip_compliance_lateral',
@@ -63,7 +61,7 @@ class WheelSlip(PeriodicPlugin):
             try:
                 self.wheels.append(self._wheel(element))
             except PluginError as error:
-                logger.error('wheel_slip: %s; this wheel does not slip', error)
+                report(Fault(f'wheel_slip: {error}; this wheel does not slip', logging.ERROR))
         if not self.wheels:
             raise PluginError('wheel_slip: there is no <wheel> that can slip')
 

@@ -15,8 +15,6 @@ from ...plugin_registry import register
 from ...runtime import NEVER, WORLD_FRAMES, Joint, Link, Model
 from ..base import ModelPlugin
 
-logger = logging.getLogger(__name__)
-
 Point = tuple[Sequence[float], int]  # positions [rad or m], and how long they hold [ns]
 
 
@@ -38,7 +36,7 @@ class JointPoseTrajectory(ModelPlugin):
     ) -> None:
         """Play a trajectory; it replaces any other.
 
-        Unknown joints are named in the log, and the others move.
+        Unknown joints are reported, and the others move.
 
         Args:
             frame: the link to keep in place; it may be of another model, which then moves. A name
@@ -52,30 +50,21 @@ class JointPoseTrajectory(ModelPlugin):
         in_world = frame in WORLD_FRAMES[1:]
         link = None if in_world else self.world.find_entity(frame)
         if not (isinstance(link, Link) or in_world):
-            logger.error(
-                'ros_joint_trajectory plugin needs a reference link [%s] as frame_id, aborting.',
-                frame,
-            )
+            what = f'ros_joint_trajectory plugin needs a reference link [{frame}] as frame_id'
+            self.world.faults.report(f'{what}, aborting.', logging.ERROR, **self.place)
             return
         self._held: Link | Model = link if isinstance(link, Link) else self.model
         self._model: Model = link.model if isinstance(link, Link) else self.model
         self._joints: list[Joint | None] = [self._model.joints.get(name) for name in joints]
         unknown = [name for name, joint in zip(joints, self._joints, strict=True) if joint is None]
         if unknown:
-            logger.warning(
-                "%smodel '%s' has no joint %s; its joints: %s",
-                self.log_prefix,
-                self._model.name,
-                ', '.join(unknown),
-                ', '.join(self._model.joints),
-            )
+            what = f"{self.log_prefix}model '{self._model.name}' has no joint {', '.join(unknown)}"
+            what += f'; its joints: {", ".join(self._model.joints)}'
+            self.world.faults.report(what, **self.place)
         now_ns = self.world.clock.now_ns
         if start_ns > now_ns:
-            logger.warning(
-                '%sa trajectory begins at %g s; until it has ended nothing moves',
-                self.log_prefix,
-                start_ns / 1e9,
-            )
+            what = f'{self.log_prefix}a trajectory begins at {start_ns / 1e9:g} s'
+            self.world.faults.report(f'{what}; until it has ended nothing moves', **self.place)
         self._points, self._next = list(points), 0
         self._start_ns = max(start_ns, now_ns)
         self.world.hold_physics(self)
@@ -91,13 +80,11 @@ class JointPoseTrajectory(ModelPlugin):
         if len(positions) == len(self._joints):
             self._put(positions)
         else:
-            logger.error(
-                'point[%d] in JointTrajectory has different number of joint names[%d] and '
-                'positions[%d].',
-                self._next,
-                len(self._joints),
-                len(positions),
+            what = (
+                f'point[{self._next}] in JointTrajectory has different number of joint '
+                f'names[{len(self._joints)}] and positions[{len(positions)}].'
             )
+            self.world.faults.report(what, logging.ERROR, **self.place)
         self._next += 1
         self._start_ns += duration_ns
         self._set_due()

@@ -7,13 +7,11 @@ Tags, defaults and timing are those of libgazebo_ros_joint_state_publisher.so in
 import logging
 from collections.abc import Mapping
 
-from ...core import NotFoundError
+from ...core import Fault, NotFoundError, report
 from ...plugin_registry import register
 from ...runtime import Joint, JointStates, Output
 from ..base import PeriodicPlugin
 from ..parameters import says_defaults_to
-
-logger = logging.getLogger(__name__)
 
 
 @register('libgazebo_ros_joint_state_publisher.so')
@@ -33,9 +31,8 @@ class JointStatePublisher(PeriodicPlugin):
             try:
                 self.joints.append(self.model.joint(name))
             except NotFoundError as error:
-                logger.error(
-                    '%sJoint %s does not exist! It is left out: %s', self.log_prefix, name, error
-                )
+                what = f'{self.log_prefix}Joint {name} does not exist! It is left out: {error}'
+                report(Fault(what, logging.ERROR))
         self.set_rate(self.params.rate('updateRate', 100.0))
         self.joint_states: Output[JointStates] = self.output('joint_states')
 

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 
 from ...core import (
     IDENTITY,
+    Fault,
     NotFoundError,
     Pose,
     Twist,
@@ -23,14 +24,13 @@ from ...core import (
     from_rpy,
     multiply,
     normalise,
+    report,
     rotate,
     subtract,
 )
 from ...plugin_registry import register
 from ...runtime import WORLD_FRAMES, Link, Odometry, Output
 from ..base import PeriodicPlugin, offsets_in_gazebo
-
-logger = logging.getLogger(__name__)
 
 _WORLD = {*WORLD_FRAMES, '/world'} - {''}
 
@@ -68,12 +68,8 @@ class P3D(PeriodicPlugin):
                 self._frame = self.model.locate(frame)
                 is_known = True
             except NotFoundError as error:
-                logger.error(
-                    '%sframeName: %s does not exist, will not publish pose: %s',
-                    self.log_prefix,
-                    frame,
-                    error,
-                )
+                what = f'{self.log_prefix}frameName: {frame} does not exist, will not publish pose'
+                report(Fault(f'{what}: {error}', logging.ERROR))
         self._shift, rpy = params.vector('xyzOffset'), params.vector('rpyOffset')  # [m], [rad]
         self._turn = from_rpy(*rpy)
         if self.world.strict and self._mount != IDENTITY:

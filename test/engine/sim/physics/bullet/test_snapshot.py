@@ -12,6 +12,7 @@ from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.physics.bullet.client import pybullet
+from rosbots_description.sim.physics.bullet.tuning import Tuning
 
 # Two links on a joint with a spring, with an inertia that makes them tumble.
 ARM = (
@@ -100,8 +101,7 @@ def test_continuation_from_a_snapshot_is_bit_identical(seed, boxes, robots):
             assert all(same), f'differs from step {20 * same.index(False)}'
 
 
-# PyBullet reorders the contact points of a body of several shapes, such as the robot. The box
-# is in worlds of its own, since the solver's iterations are common to all and follow the motors.
+# PyBullet reorders the contact points of a body of several shapes, such as the robot.
 @pytest.mark.parametrize(
     ('make_spec', 'tolerances'),
     [
@@ -207,7 +207,7 @@ def test_unreferenced_snapshots_are_freed(monkeypatch):
 
 
 def test_restore_costs_as_much_as_some_steps():
-    with empty_world() as world:
+    with empty_world(Tuning(rest=math.inf)) as world:  # a world at rest makes no steps
         world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
         world.engine.step(2500)
         snapshot = world.engine.snapshot()

@@ -37,8 +37,10 @@ from rosbots_description.sim.core.transforms import (
 from rosbots_description.sim.description.model_spec import Cylinder, Element
 from rosbots_description.sim.physics.bullet.body import Place
 from rosbots_description.sim.physics.bullet.client import pybullet
+from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.outputs import FrameTransform, JointStates, Odometry
 
+CONVERGED = Tuning(iterations=3.0)  # 150
 LIGHT = castered(1.0, 0.2, casters=1)
 MIDDLE = castered(casters=1)
 HEAVY = castered(50.0, 1.0, casters=2, mu=0.1)
@@ -180,11 +182,12 @@ def test_slow_commands_are_followed_on_level_ground(spec):
     ],
 )
 def test_slow_turns_are_followed(spec, rate):
+    """Within what a wheel makes of it that turns about one of its outer crests: b / 2R, 6 %."""
     with empty_world() as world:
         model = placed(world, spec)
         command(model, 0.0, rate)
         world.run(3000)
-        assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.05)
+        assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.065)
 
 
 def share_turned(size, mu):
@@ -216,12 +219,17 @@ def share_turned(size, mu):
     ],
 )
 def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, mu, rate, yaw):
-    with empty_world() as world:
-        model = placed(world, castered(mass, size, casters=2, mu=mu), yaw=yaw)
-        command(model, 0.0, rate)
-        world.run(3000)
-        share = turned(model, world, 3000) / 3.0 / rate
-        assert share == pytest.approx(share_turned(size, mu), rel=0.02)
+    """Solved to convergence; otherwise the wheels turn about any crest from the middle outwards."""
+    for tuning in (CONVERGED, None):
+        with empty_world(tuning) as world:
+            model = placed(world, castered(mass, size, casters=2, mu=mu), yaw=yaw)
+            command(model, 0.0, rate)
+            world.run(3000)
+            share = turned(model, world, 3000) / 3.0 / rate
+        if tuning:
+            assert share == pytest.approx(share_turned(size, mu), rel=0.02)
+        else:
+            assert 0.98 * share_turned(size, 1.0) < share < 1.02
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,8 @@ def test_an_inertial_is_read_with_its_own_pose():
     inertial = (
         load(
             link(
-                '<inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
+                '<inertial><mass>2</mass><pose>0 0 0.5 0 0 '
+                '0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
                 '<izz>0.25</izz><ixy>0.01</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>'
             )
         )
@@ -176,7 +177,8 @@ def test_negative_limits_of_contacts_that_gazebo_writes_are_accepted():
     surface = (
         load(
             link(
-                f'<collision name="c">{BOX}<surface><contact><ode><max_vel>-1</max_vel><min_depth>-1'
+                f'<collision name="c">{BOX}<surface><contact><ode><max_vel>-1</max_vel>'
+                f'<min_depth>-1'
                 '</min_depth></ode></contact></surface></collision>'
             )
         )
@@ -466,7 +468,8 @@ def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
         ),
         (
             link(
-                f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact></surface>'
+                f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact>'
+                f'</surface>'
                 '</collision>'
             ),
             '<kp> is -5; it must not be negative',

@@ -5,7 +5,7 @@ import logging
 import pytest
 from support import ROOT
 
-from rosbots_description.sim.formats.urdf import gazebo_tags
+from rosbots_description.sim.formats.urdf import gazebo_tags, link_tags
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
 MISSING = 'not supported'
@@ -70,10 +70,10 @@ def test_gazebo_element_agrees_with_its_row(name, state, how, caplog):
 
 
 def test_every_known_gazebo_element_has_a_row():
-    tags = {*gazebo_tags._SURFACE_NUMBERS, *gazebo_tags._LINK_READERS, *gazebo_tags._PARTS}
+    tags = {*link_tags.SURFACE_NUMBERS, *link_tags.LINK_READERS, *gazebo_tags._PARTS}
     known = (
         {f'link/{tag}' for tag in tags - {'collision'}}
-        | {f'link/collision/{path}' for path in gazebo_tags._SURFACE_PATHS}
+        | {f'link/collision/{path}' for path in link_tags.SURFACE_PATHS}
         | {f'joint/{tag}' for tag in gazebo_tags._JOINT_TAGS}
     )
     assert known <= {name for name, _, _ in ROWS}

@@ -49,7 +49,8 @@ def test_missing_mesh_is_one_error_that_lists_its_users(caplog, tmp_path):
         (
             'ERROR',
             (
-                f"model 'bot' (bot.urdf): mesh file '{tmp_path}/wheel.dae' does not exist or cannot be "
+                f"model 'bot' (bot.urdf): mesh file '{tmp_path}/wheel.dae' does not exist or "
+                f'cannot be '
                 "reached; check name and package (written 'package://p/wheel.dae'); "
                 "left out: collision of link 'a' (line 2), visual of link 'a' (line 3)"
             ),

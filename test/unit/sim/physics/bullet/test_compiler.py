@@ -82,7 +82,8 @@ def seen(count):
             lambda count: rough(count, joints=100),
             28,
             '28 collisions with surfaces of their own and '
-            '100 joints; the physics engine supports 127 of both: give the collisions of a link the same '
+            '100 joints; the physics engine supports 127 of both: give the collisions of a link '
+            'the same '
             'mu',
         ),
         (

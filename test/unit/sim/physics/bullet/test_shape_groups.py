@@ -50,11 +50,12 @@ def test_level_wheel_has_crests_in_the_middle_and_at_both_ends(tilt):
         (TYRE, wheel(-1.01 * LEVEL), AXLE),
         (TYRE, wheel(), None),
         (TYRE, wheel(), replace(AXLE, type=FIXED)),
+        # the axis is not that of the cylinder
         (
             TYRE,
             wheel(),
             replace(AXLE, axis=(1.0, 0.0, 0.0)),
-        ),  # the axis is not that of the cylinder
+        ),
         (TYRE, LinkSpec('turntable'), AXLE),  # a turntable
         (Collision('box', Box((1.0, 1.0, 1.0))), wheel(), AXLE),
     ],
