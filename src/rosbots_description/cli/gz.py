@@ -206,9 +206,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _require_something(options: argparse.ArgumentParser, flags: argparse.Namespace) -> None:
     """End with 2 if the options do not say what to do."""
+    # 0 is a value
     given = {
         name for name, value in vars(flags).items() if value is not None and value is not False
-    }  # 0 is a value
+    }
     given -= {'command', 'world_name'}
     if flags.command == 'model' and not flags.list and flags.model_name is None:
         options.error('model: the name of a model is needed: -m NAME')

@@ -5,13 +5,16 @@ import importlib.util
 import re
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from .page_token import add_options, announced, given_tokens
 from .program import run
 from .web_browser import opened
+
+if TYPE_CHECKING:
+    from ..sim.core import Fault
 
 NAME = 'rosbots-view'
 MOST_FAULTS = 20  # that are printed
@@ -54,42 +57,48 @@ def main(arguments: Sequence[str] | None = None) -> int:
             'no page: the Python package viser is not installed; '
             "pip install 'rosbots_description[web]' or ./rosbots setup web does that"
         )
+    return _serve(options, values)
+
+
+def _serve(options: argparse.Namespace, values: dict[str, str]) -> int:
+    """Serve the page of the file that `options` name; return the exit code."""
     from ..sim.core import SimError
-    from ..viewer import Viewer, open_file
+    from ..viewer import Viewer, open_file, open_sandbox
     from ..web import LOOPBACK, Site, WindowError
 
-    try:
-        token, viewing_token = given_tokens(options)
-        site = Site(
-            options.host,
-            options.port,
-            token,
-            viewing_token=viewing_token,
-            most_viewers=options.max_viewers,
-        )
-    except WindowError as error:
-        return _fail(str(error))
-    except OSError as error:
-        return _fail(f"no token in '{error.filename}': {error.strerror or error}")
-    try:
-        file = open_file(options.file, values)
-    except (SimError, OSError) as error:
-        site.stop()
-        return _fail(str(error))
-    _list(file.faults)
-    if options.host not in LOOPBACK:
-        _say(
-            'whoever has this address sees and controls the simulation, and the connection is '
-            'not encrypted'
-        )
-    with file.world as world, _until_terminated():
-        viewer = Viewer(world, site, paused=options.paused)
-        with (
-            announced(NAME, site.address, site.viewing_address),
-            nullcontext() if options.no_open else opened(site.address),
-        ):
-            viewer.serve_until_interrupted()
-    return 0
+    with open_sandbox() as sandbox:
+        try:
+            token, viewing_token = given_tokens(options)
+            site = Site(
+                options.host,
+                options.port,
+                token,
+                viewing_token=viewing_token,
+                most_viewers=options.max_viewers,
+            )
+        except WindowError as error:
+            return _fail(str(error))
+        except OSError as error:
+            return _fail(f"no token in '{error.filename}': {error.strerror or error}")
+        try:
+            world = open_file(options.file, values, sandbox)
+        except (SimError, OSError) as error:
+            site.stop()
+            return _fail(str(error))
+        _list(world.faults)
+        if options.host not in LOOPBACK:
+            _say(
+                'whoever has this address sees and controls the simulation, and the connection is '
+                'not encrypted'
+            )
+        with world, _until_terminated():
+            viewer = Viewer(world, site, paused=options.paused, sandbox=sandbox)
+            with (
+                announced(NAME, site.address, site.viewing_address),
+                nullcontext() if options.no_open else opened(site.address),
+            ):
+                viewer.serve_until_interrupted()
+        return 0
 
 
 def script() -> NoReturn:
@@ -97,18 +106,21 @@ def script() -> NoReturn:
     sys.exit(run(main))
 
 
-def _list(faults: Sequence[str]) -> None:
-    """Print what is wrong with the file."""
-    for fault in faults[:MOST_FAULTS]:
-        _say(fault)
-    if len(faults) > MOST_FAULTS:
-        _say(f'and {len(faults) - MOST_FAULTS} more')
+def _list(faults: 'Iterable[Fault]') -> None:
+    """Print what is wrong with the file, the worst first."""
+    from ..sim.core import worst_first
+
+    sentences = list(dict.fromkeys(map(str, worst_first(faults))))
+    for sentence in sentences[:MOST_FAULTS]:
+        _say(sentence)
+    if len(sentences) > MOST_FAULTS:
+        _say(f'and {len(sentences) - MOST_FAULTS} more')
 
 
 @contextmanager
 def _until_terminated() -> Iterator[None]:
     """End as by Ctrl-C when the process is terminated."""
-    before = signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         yield
     finally:

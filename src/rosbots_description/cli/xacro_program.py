@@ -20,6 +20,7 @@ import yaml
 from ..sim.xacro_module import import_xacro
 
 _PYTHON = {'bool': bool, 'len': len, 'range': range, 'sorted': sorted}
+# in rad and m
 _UNITS = {
     '!radians': 1.0,
     '!degrees': math.pi / 180.0,
@@ -27,7 +28,7 @@ _UNITS = {
     '!millimeters': 1e-3,
     '!foot': 0.3048,
     '!inches': 0.0254,
-}  # in rad and m
+}
 
 
 def main() -> int:

@@ -1,60 +1,78 @@
 """A world with what a file describes: a robot on the ground, or a whole world."""
 
-import logging
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import closing
 
-from ..sim import Pose, World
-from ..sim.core import held_records
+from ..sim import Fault, PhysicsSettings, Pose, World
+from ..sim.core import log_fault, reporting_to
 from ..sim.description import WORLD
+from ..sim.physics import CrashSandbox, make_engine
 from ..sim.placement import box_around, placed
 from ..sim.resources import MAX_XML_BYTES, parse_xml, read_file, root_tag
 
 
-@dataclass(frozen=True)
-class OpenedFile:
-    """A world, and what is wrong with its file: sentences with line and cure, the worst first."""
+def open_sandbox() -> CrashSandbox:
+    """Return a sandbox that tests models before they can crash this process.
 
-    world: World
-    faults: tuple[str, ...]
+    It forks this process, so open it before there are threads.
+    """
+    with closing(make_engine(PhysicsSettings())) as engine:
+        return CrashSandbox(engine, make_engine)
 
 
 def open_file(
-    path: str | os.PathLike[str], arguments: Mapping[str, str] | None = None
-) -> OpenedFile:
+    path: str | os.PathLike[str],
+    arguments: Mapping[str, str] | None = None,
+    sandbox: CrashSandbox | None = None,
+) -> World:
     """Open a world with the model of a URDF, xacro or SDF file, or the world of a world file.
 
     A model stands on a ground plane, its lowest point at z = 0, unless it is fixed to the world.
+    What is wrong with the file is among the faults of the world, and not logged.
 
     Args:
         path: of a file of one's own: xacro is evaluated as upstream does.
         arguments: for a xacro file, by name.
+        sandbox: tests a model before it is spawned; a world is not tested.
     Raises:
         SimError: the file cannot be read, or nothing in it can be simulated.
     """
-    with held_records(logging.WARNING) as records:
-        file = os.fspath(path)
-        world = World.from_file(file) if _is_world(file) else _with_model(file, arguments or {})
-    worst_first = sorted(records, key=lambda record: -record.levelno)
-    return OpenedFile(world, tuple(dict.fromkeys(one.getMessage() for one in worst_first)))
-
-
-def _with_model(path: str, arguments: Mapping[str, str]) -> World:
-    world = World.empty()
-    try:
-        spec, pose = world.read_model(path, arguments=arguments)
-        is_fixed = spec.static or any(joint.parent == WORLD for joint in spec.joints)
-        box = None if is_fixed else box_around(spec, pose)
-        if box is not None:
-            floor = Pose((*pose.position[:2], 0.0), pose.orientation)
-            box[:, 2] -= pose.position[2]
-            pose = placed(world, floor, box, on_ground=True, beside=False)
-        world.spawn(spec, spec.name, pose)
-    except BaseException:
-        world.close()
-        raise
+    file = os.fspath(path)
+    with reporting_to(_keep):  # before there is a world
+        is_world = _is_world(file)
+    if is_world:
+        world = World.from_file(file, on_fault=_keep)
+    else:
+        world = World.empty(on_fault=_keep)
+        try:
+            with reporting_to(world.faults.add):
+                _spawn(world, file, arguments or {}, sandbox)
+        except BaseException:
+            world.close()
+            raise
+    world.faults.on_fault = log_fault
     return world
+
+
+def _keep(_fault: Fault) -> None:
+    """Leave a fault to the list of the world."""
+
+
+def _spawn(
+    world: World, path: str, arguments: Mapping[str, str], sandbox: CrashSandbox | None
+) -> None:
+    spec, pose = world.read_model(path, arguments=arguments)
+    is_fixed = spec.static or any(joint.parent == WORLD for joint in spec.joints)
+    box = None if is_fixed else box_around(spec, pose)
+    if box is not None:
+        floor = Pose((*pose.position[:2], 0.0), pose.orientation)
+        box[:, 2] -= pose.position[2]
+        pose = placed(world, floor, box, on_ground=True, beside=False)
+    model = world.compile(spec)
+    if sandbox is not None:
+        sandbox.require(model, world.physics)
+    world.spawn(model, spec.name, pose)
 
 
 def _is_world(path: str) -> bool:

@@ -7,6 +7,7 @@ from ..sim import Pose, SimError, World
 from ..sim.core import Vector, compose, rotate
 from ..sim.description import LightSpec, ModelText
 from ..sim.formats import copy_of_model, load_sdf_light
+from ..sim.physics import CrashSandbox
 from ..sim.placement import box_around, free_name, placed
 from ..sim.resources import own_name, root_tag
 from .commands import WorldCommands
@@ -20,8 +21,8 @@ _SDF = 'sdf', 'gazebo'
 class WorldHands:
     """Actions on models; each raises SimError with a sentence if it is refused."""
 
-    def __init__(self, world: World, commands: WorldCommands) -> None:
-        self._world, self._commands = world, commands
+    def __init__(self, world: World, commands: WorldCommands, sandbox: CrashSandbox | None) -> None:
+        self._world, self._commands, self._sandbox = world, commands, sandbox
 
     def insert(self, text: ModelText, on_ground: bool = False, beside: bool = False) -> str:
         """Spawn a model or light under a name that is free; return the name."""
@@ -34,6 +35,8 @@ class WorldHands:
         spec, own = self._world.read_model(text.xml, name)
         compiled, pose = self._world.compile(spec), compose(text.pose, own)
         box = box_around(spec, pose)
+        if self._sandbox is not None:
+            self._sandbox.require(compiled, self._world.physics)
 
         def add() -> str:
             place = pose if box is None else placed(self._world, pose, box, on_ground, beside)

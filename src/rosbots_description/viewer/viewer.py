@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from ..sim import World
+from ..sim.physics import CrashSandbox
 from ..sim.runtime import World as RunningWorld
 from ..web import Site
 from .contacts import WorldContacts
@@ -20,15 +21,26 @@ from .worlds import WorldFiles, WorldLibrary
 class Viewer(Window):
     """Serves the page of a world; `run` and `serve` are for the thread that owns the world."""
 
-    def __init__(self, world: World, site: Site, *, paused: bool = False) -> None:
-        """Begin to serve; the page shows the world from the first `run` or `serve` on."""
+    def __init__(
+        self,
+        world: World,
+        site: Site,
+        *,
+        paused: bool = False,
+        sandbox: CrashSandbox | None = None,
+    ) -> None:
+        """Begin to serve; the page shows the world from the first `run` or `serve` on.
+
+        Args:
+            sandbox: tests what the page inserts; None: it is not tested.
+        """
         self.time = pace = WorldPace(world)
         pace.paused = paused
         self.commands = commands = pace.commands
         self.robots = WorldRobots(world, commands)
         self.joints = WorldJoints(world, commands)
         self.inspection = WorldInspection(world, commands)
-        self.hands = WorldHands(world, commands)
+        self.hands = WorldHands(world, commands, sandbox)
         self.sensors = WorldSensors(world, commands)
         self.contacts = self._contacts = WorldContacts(world)
         self.worlds = WorldFiles(world, commands)

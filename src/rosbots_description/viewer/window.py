@@ -3,8 +3,9 @@
 import math
 import threading
 import time
+from collections.abc import Sequence
 
-from ..sim import SimError, World
+from ..sim import Fault, SimError, World
 from ..web import (
     Contacts,
     Goals,
@@ -64,6 +65,10 @@ class Window:
         self._page = Page(site, self)
         self._ended = threading.Event()
         threading.Thread(target=self._poll, name='page', daemon=True).start()
+
+    def faults(self) -> Sequence[Fault]:
+        """Return the faults of the world, for the page."""
+        return self._world.faults[:]
 
     def run(self, steps: int) -> int:
         """Make steps of the world, at the pace of the page while a browser is connected.

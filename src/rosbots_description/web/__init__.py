@@ -9,9 +9,10 @@ from .hands import Hands
 from .insert import Library
 from .joints import Joints
 from .maps import Maps
-from .page import Page, Simulator
+from .page import Page
 from .plot import Signals
 from .recorder import Recorder
+from .simulator import Simulator
 from .site import Site, WindowError
 from .take_away import Worlds
 from .topics import ShownTopics

@@ -168,13 +168,15 @@ class ChangePanel(Panel):
             for one in part.collisions
         ]
 
+        set_friction = self._inspection.set_friction
+
         def undo() -> None:
             for one in before:
-                self._inspection.set_friction(*one)
+                set_friction(*one)
 
         name = scoped_name(model.name, link)
         self._note(self._mu, self._mu2)
-        self._inspection.set_friction(name, self._mu.value, self._mu2.value)
+        set_friction(name, self._mu.value, self._mu2.value)
         self._history.add(f"friction of '{name}'", undo)
 
 

@@ -31,6 +31,8 @@ class Choice:
 
     def offer(self, names: Sequence[str]) -> None:
         """Offer other names, at least one; the first is chosen if the chosen one is missing."""
+        if tuple(names) == self.names:
+            return
         found = _by_text(names)
         if list(found.items()) != list(self._names.items()):
             self._names = found

@@ -53,7 +53,7 @@ def state_html(model: ShownModel, link: str | None, pose: Pose, twist: Twist | N
     pairs = friction(links)
     if len(pairs) == 1:
         ((mu, mu2),) = pairs
-        rows.append(('Friction mu, mu2', f'{mu:.4g}\u2003{mu2:.4g}'))
+        rows.append(('Friction mu, mu2', f'{mu:.4g}, {mu2:.4g}'))
     elif pairs:
         rows.append(('Friction', 'each collision has its own'))
     title = markup(scoped_name(model.name, link))
@@ -73,15 +73,16 @@ def parts_html(model: ShownModel, link: str | None, omissions: Sequence[str] = (
     missing = [markup(one) for one in omissions]
     return ''.join(
         (
-            _list('Spawned without', missing),
-            _list('Joints', joints),
-            _list('Collisions', collisions),
-            _list('Sensors', sensors),
+            list_html('Spawned without', missing),
+            list_html('Joints', joints),
+            list_html('Collisions', collisions),
+            list_html('Sensors', sensors),
         )
     )
 
 
-def _list(title: str, entries: Sequence[str]) -> str:
+def list_html(title: str, entries: Sequence[str]) -> str:
+    """Return a list that unfolds, of entries in HTML; '' without entries."""
     if not entries:
         return ''
     shown = ''.join(f'<li>{entry}</li>' for entry in entries[:MOST])
@@ -126,4 +127,4 @@ def _shape(geometry: Geometry) -> str:
 
 
 def _three(vector: Vector) -> str:
-    return '\u2003'.join(f'{round(one, 3) + 0.0:.3f}' for one in vector)
+    return ', '.join(f'{round(one, 3) + 0.0:.3f}' for one in vector)

@@ -25,7 +25,7 @@ from websockets.http11 import Request, Response
 
 LOOPBACK = ('127.0.0.1', '::1', 'localhost')
 TOKEN = re.compile(r'[A-Za-z0-9_-]{16,128}')
-NO_TOKEN = 'The address needs the token that gzweb has printed.'
+NO_TOKEN = 'The address needs the token: open the whole address that was printed.'
 OTHER_PAGE = 'This window is not for other pages.'
 OTHER_HOST = 'Without a token, this window has no name but those of its machine.'
 MALFORMED = 'The address in this request is malformed.'

@@ -1,7 +1,7 @@
 """Driving by keys and held buttons, as by teleop_twist_keyboard."""
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Protocol
 
@@ -11,6 +11,7 @@ from .camera_keys import CameraKeys
 from .choice import Choice
 from .layout import PAD
 from .panel import Panel
+from .site import Allow
 
 HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a second
 # Ahead and left, -1 to 1, with teleop's keys. Viser lists neither comma nor full stop, but passes
@@ -46,13 +47,41 @@ class Robots(Protocol):
         """Send a command: forward [m/s], and turning left [rad/s]."""
 
 
+class VelocityCommands:
+    """Drives robots for all browsers; one stops when no command has come for `HOLD`."""
+
+    def __init__(self, robots: Robots) -> None:
+        self._robots = robots
+        self._lock = threading.Lock()
+        self._ends: dict[str, threading.Timer] = {}  # stop what is driven, by its topic
+
+    def drive(self, topic: str, forward: float, left: float) -> None:
+        """Send a command for `HOLD`: forward [m/s], and turning left [rad/s]."""
+        with self._lock:
+            if topic in self._ends:  # another robot stops when its time has come
+                self._ends.pop(topic).cancel()
+            self._robots.drive(topic, forward, left)
+            if forward or left:
+                end = self._ends[topic] = threading.Timer(
+                    HOLD, self._robots.drive, (topic, 0.0, 0.0)
+                )
+                end.daemon = True
+                end.start()
+
+
 class DrivePanel(Panel):
     """Controls that are there while there is something to drive; it stops when they are let go."""
 
-    def __init__(self, gui: viser.GuiApi, robots: Robots, keys: CameraKeys) -> None:
-        self._robots, self._camera_keys = robots, keys
-        self._lock = threading.Lock()
-        self._ends: dict[str, threading.Timer] = {}  # stop what is driven, by its topic
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        velocities: VelocityCommands,
+        topics: Callable[[], Sequence[str]],
+        keys: CameraKeys,
+        allow_viewers: Allow,
+    ) -> None:
+        """Add the controls; `topics` returns the newest of `Robots.drive_topics`."""
+        self._velocities, self._offered, self._camera_keys = velocities, topics, keys
         self._topics: Sequence[str] = ()
         self._folder = gui.add_folder('Drive', visible=False)
         with self._folder:
@@ -79,10 +108,11 @@ class DrivePanel(Panel):
             ahead, left, _ = DIRECTIONS[command.label.split()[0]]
             command.on_trigger(partial(self._command, ahead, left))
         self._keys.on_update(lambda _: self._bind())
+        allow_viewers(self._keys)
 
     def refresh(self) -> None:
         """Offer the topics that there are."""
-        topics = tuple(self._robots.drive_topics())
+        topics = self._offered()
         if topics != self._topics:
             self._topics = topics
             self._folder.visible = bool(topics)
@@ -91,20 +121,10 @@ class DrivePanel(Panel):
             self._bind()
 
     def steer(self, ahead: float, left: float) -> None:
-        """Send a command for `HOLD`: parts of the greatest speed and turn, -1 to 1."""
-        with self._lock:
-            topic = self._topic.value
-            if topic not in self._topics:
-                return
-            if topic in self._ends:  # another robot stops when its time has come
-                self._ends.pop(topic).cancel()
-            self._robots.drive(topic, ahead * self._speed.value, left * self._turn.value)
-            if ahead or left:
-                end = self._ends[topic] = threading.Timer(
-                    HOLD, self._robots.drive, (topic, 0.0, 0.0)
-                )
-                end.daemon = True
-                end.start()
+        """Drive: parts of the greatest speed and turn, -1 to 1."""
+        topic = self._topic.value
+        if topic in self._topics:
+            self._velocities.drive(topic, ahead * self._speed.value, left * self._turn.value)
 
     def _bind(self) -> None:
         """Let the camera's keys drive, or leave them to the camera."""

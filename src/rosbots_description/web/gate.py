@@ -9,12 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import viser
-from viser._messages import (
-    FileTransferPartAck,
-    GuiUpdateMessage,
-    SetOrientationMessage,
-    SetPositionMessage,
-)
+from viser._messages import FileTransferPartAck, GuiUpdateMessage
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
@@ -29,10 +24,12 @@ logger = logging.getLogger(__name__)
 MOST_CLIENTS = 16
 FULL = 'This window has no room for another browser.'
 LOOKS = 'This address is for looking: its browsers see everything and change nothing.'
-# What a browser may send that may only look: where its camera is, pictures that it is asked for,
-# and confirmations of parts of a download. Parts of uploads are dropped, as none has begun.
+# What a browser may send that may only look: where its camera is, what it clicks on, which selects
+# that for itself, pictures that it is asked for, and confirmations of parts of a download. Parts of
+# uploads are dropped, as none has begun.
 OF_VIEWERS = {
     'ViewerCameraMessage',
+    'SceneNodeClickMessage',
     'GetRenderResponseMessage',
     'FileTransferPartAck',
     'FileTransferPart',
@@ -46,7 +43,7 @@ BUSY = 'The simulator is busy: some of what was done here is left out'
 PAUSE = 1.0  # [s, wall] between two notices of refusals
 
 Received = Callable[[viser.ClientHandle, str, bytes], object]
-Control = viser.GuiButtonHandle | viser.GuiButtonGroupHandle | viser.CommandHandle
+Control = viser.GuiInputHandle[Any] | viser.GuiButtonHandle | viser.CommandHandle
 
 
 @dataclass
@@ -80,13 +77,25 @@ class Gate:
         """Let browsers that may only look use controls that act on their own browser only."""
         self._for_viewers |= {control._impl.uuid for control in controls}
 
+    def may_control(self, client: viser.ClientHandle) -> bool:
+        """Tell whether a browser may do more than look."""
+        return any(
+            visitor.may_control and self._client(visitor) is client
+            for visitor in tuple(self._visitors.values())
+        )
+
     def greet(self, client: viser.ClientHandle) -> None:
         """Tell a browser that may only look so."""
-        if any(
-            not visitor.may_control and self._client(visitor) is client
-            for visitor in tuple(self._visitors.values())
-        ):
+        if not self.may_control(client):
             show(client, LOOKS)
+
+    def forget(self, client: viser.ClientHandle) -> None:
+        """Forget the controls that only a browser had which has disconnected."""
+        gui = client.gui
+        gone = gui._gui_input_handle_from_uuid.keys() | gui._command_handle_from_uuid.keys()
+        self._for_viewers -= gone
+        for button in gone & self._receivers.keys():
+            del self._receivers[button]
 
     def connection_class(self) -> type[ServerConnection]:
         """Return the class of connections whose messages are checked here."""
@@ -164,13 +173,13 @@ class Gate:
         if kind in {'FileTransferPartAck', 'GetRenderResponseMessage'}:
             return True
         if kind == 'GuiUpdateMessage':
-            control = self.site.gui._gui_input_handle_from_uuid.get(message.uuid)
+            control = self._control(visitor, message.uuid)
             if control is not None:
                 check_value(control, message.updates['value'])
         return True
 
     def _check_viewer(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401  a struct
-        """Refuse what changes anything but the view of a browser that may only look.
+        """Refuse what changes anything but view and selection of a browser that may only look.
 
         Raises:
             RefusedError: it does.
@@ -184,28 +193,32 @@ class Gate:
 
     def _undo(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
         """Show a browser again what is true, in place of what was done there."""
-        assert self.site is not None
-        client, kind = self._client(visitor), type(message).__name__
+        client = self._client(visitor)
+        kind = type(message).__name__
         if client is None:
             return
-        send = client._websock_connection.queue_message
         if kind == 'GuiUpdateMessage':
-            control = self.site.gui._gui_input_handle_from_uuid.get(message.uuid)
+            control = self._control(visitor, message.uuid)
             if control is not None:
-                send(GuiUpdateMessage(message.uuid, {'value': control.value}))
-        elif kind.startswith('TransformControls'):
-            handle = self.site.scene._handle_from_node_name.get(message.name)
-            if handle is not None:
-                send(SetPositionMessage(message.name, tuple(handle.position)))
-                send(SetOrientationMessage(message.name, tuple(handle.wxyz)))
+                client._websock_connection.queue_message(
+                    GuiUpdateMessage(message.uuid, {'value': control.value})
+                )
         elif kind == 'FileTransferStartUpload':
             self._acknowledge(visitor, message, message.size_bytes)  # ends it in the browser
 
+    def _control(self, visitor: Visitor, number: str) -> Any:  # noqa: ANN401  any of viser's
+        """Return a control of this browser, or of all; None: it has none of that number."""
+        assert self.site is not None
+        client = self._client(visitor)
+        own = {} if client is None else client.gui._gui_input_handle_from_uuid
+        return own.get(number) or self.site.gui._gui_input_handle_from_uuid.get(number)
+
     def _start(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
-        if message.source_component_uuid not in self._receivers:
-            raise MalformedError('This is no button for files.')
         if self._client(visitor) is None:
             raise MalformedError('A page says where it looks before it sends a file.')
+        button = message.source_component_uuid
+        if button not in self._receivers or self._control(visitor, button) is None:
+            raise MalformedError('This is no button for files.')
         try:
             whole = self._uploads.start(visitor, message)
         except RefusedError:
@@ -229,8 +242,8 @@ class Gate:
     def _acknowledge(
         self,
         visitor: Visitor,
-        message: Any,
-        size: int,  # noqa: ANN401
+        message: Any,  # noqa: ANN401
+        size: int,
         received: int | None = None,
     ) -> None:
         """Let a browser show how much of its file has come; by default, all of it."""
@@ -283,7 +296,7 @@ class Gate:
         return next(
             (
                 self.site.get_clients().get(number)
-                for number, one in connections.items()
+                for number, one in tuple(connections.items())
                 if one is visitor.connection
             ),
             None,

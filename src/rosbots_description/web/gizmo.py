@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import viser
@@ -40,6 +41,7 @@ class Drag:
         self.is_done = False  # whether the model was moved to the last pose
         self._hands, self._complain, self._ended = hands, complain, ended
         self._released = threading.Event()
+        self._is_taken_over = False
         threading.Thread(target=self._run, daemon=True).start()
 
     @property
@@ -51,6 +53,11 @@ class Drag:
         """Send the last pose, and end."""
         self._released.set()
 
+    def give_way(self) -> None:
+        """End without a further command: another browser has grabbed the model."""
+        self._is_taken_over = True
+        self._released.set()
+
     def _run(self) -> None:
         attempt(self._follow, self._complain)
         self._ended(self)
@@ -58,30 +65,59 @@ class Drag:
     def _follow(self) -> None:
         while not self.is_done:
             last = self._released.wait(PERIOD)
+            if self._is_taken_over:
+                return
             self._hands.hold(self.model, self.pose, 0.0 if last else HOLD)
             self.is_done = last
 
 
+class Drags:
+    """The drags of all browsers. The one that has grabbed a model last moves it."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._newest: dict[str, Drag] = {}  # by models
+
+    def add(self, drag: Drag) -> None:
+        """Let a drag take over its model."""
+        with self._lock:
+            before = self._newest.get(drag.model)
+            self._newest[drag.model] = drag
+        if before is not None:
+            before.give_way()
+
+    def remove(self, drag: Drag) -> None:
+        """Forget a drag that has ended."""
+        with self._lock:
+            if self._newest.get(drag.model) is drag:
+                del self._newest[drag.model]
+
+
 class Gizmo(Panel):
-    """One for all browsers. The browser that has grabbed it last moves the model."""
+    """The handles in one browser."""
 
     def __init__(
         self,
-        site: viser.ViserServer,
+        client: viser.ClientHandle,
         models: Models,
         selection: Selection,
         hands: Hands,
+        drags: Drags,
         history: History,
         complain: Callable[[str], None],
     ) -> None:
-        self._site, self._models, self._selection = site, models, selection
+        self._drags = drags
+        self._client, self._models, self._selection = client, models, selection
         self._hands, self._history, self._complain = hands, history, complain
         self._lock = threading.Lock()  # of the drag
         self._drag: Drag | None = None
-        self._owner: int | None = None  # the number of the browser that drags
         self._handle: viser.TransformControlsHandle | None = None
         self._model: str | None = None  # at which it is
         selection.on_change(self._reach)
+
+    def close(self) -> None:
+        """Let go."""
+        self._release()
 
     def apply(self, _change: SceneChange) -> None:
         """Follow a model that was spawned anew under its name."""
@@ -105,14 +141,14 @@ class Gizmo(Panel):
         if self._selection.model == self._model:
             return  # only its link is another
         self._model = self._selection.model
-        self._release(self._owner)
+        self._release()
         if self._handle is not None:
             self._handle.remove()
             self._handle = None
         if self._model is not None:
             pose = self._models.pose(self._model)
-            with self._site.atomic():  # nobody grabs it before it is listened to
-                self._handle = self._site.scene.add_transform_controls(
+            with self._client.atomic():  # not grabbed before it is listened to
+                self._handle = self._client.scene.add_transform_controls(
                     NODE,
                     1.0,
                     fixed=False,
@@ -124,39 +160,40 @@ class Gizmo(Panel):
                 self._handle.on_update(self._dragged)
 
     async def _dragged(self, event: viser.TransformControlsEvent) -> None:
-        """Take in what a browser does; on viser's own thread, so it must not wait."""
+        """Take in what the browser does; on viser's own thread, so it must not wait."""
         if event.phase == 'start':
             self._grab(event)
         elif event.phase == 'update':
             with self._lock:
-                if self._drag is not None and event.client_id == self._owner:
+                if self._drag is not None:
                     self._drag.pose = pose_of(event.target)
         else:
-            self._release(event.client_id)
+            self._release()
 
     def _grab(self, event: viser.TransformControlsEvent) -> None:
         with self._lock:
-            if self._model is not None and event.target is self._handle:
-                self._owner = event.client_id
-                if self._drag is None or self._drag.is_released:
-                    self._drag = Drag(
-                        self._model, pose_of(event.target), self._hands, self._complain, self._end
-                    )
+            is_free = self._drag is None or self._drag.is_released
+            if is_free and self._model is not None and event.target is self._handle:
+                self._drag = Drag(
+                    self._model, pose_of(event.target), self._hands, self._complain, self._end
+                )
+                self._drags.add(self._drag)
 
-    def _release(self, client: int | None) -> None:
+    def _release(self) -> None:
         with self._lock:
-            if self._drag is not None and client == self._owner:
+            if self._drag is not None:
                 self._drag.release()
 
     def _end(self, drag: Drag) -> None:
         """Remember the move; called when the last command was answered."""
+        self._drags.remove(drag)
         with self._lock:
             if self._drag is drag:
-                self._drag = self._owner = None
+                self._drag = None
         if drag.is_done and not np.allclose(
             [*drag.pose.position, *drag.pose.orientation],
             [*drag.start.position, *drag.start.orientation],
         ):
             self._history.add(
-                f"move '{drag.model}'", lambda: self._hands.move(drag.model, drag.start)
+                f"move '{drag.model}'", partial(self._hands.move, drag.model, drag.start)
             )

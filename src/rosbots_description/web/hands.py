@@ -113,7 +113,7 @@ class HandsPanel(Panel):
     def _duplicate(self, model: str) -> None:
         name = self._hands.insert(self._hands.describe(model), beside=True)
         self._selection.expect(name)
-        self._history.add(f"duplicate '{model}'", lambda: self._hands.delete(name))
+        self._history.add(f"duplicate '{model}'", partial(self._hands.delete, name))
 
     def _delete(self, model: str) -> None:
         text = self._hands.describe(model)

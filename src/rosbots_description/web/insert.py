@@ -1,16 +1,15 @@
 """Insert models: shapes, a light, models of the model path, robot descriptions, and files."""
 
-import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Protocol
 
 import viser
 
 from ..sim.core import Pose, SimError, Vector
-from ..sim.description import GROUND_PLANE, LightSpec, ModelSpec, ModelText, SceneChange
+from ..sim.description import LightSpec, ModelSpec, ModelText, SceneChange
 from .choice import Choice
-from .ground_clicks import GroundClicks
 from .hands import Hands
 from .history import History
 from .panel import Panel, attempt
@@ -21,7 +20,6 @@ from .site import Site
 
 MOST = 1000  # names that are offered
 LISTED = 4  # parts that a model was spawned without
-LOOKS = 10  # refreshes between two looks at what can be inserted
 NONE = '(none)'
 
 
@@ -55,21 +53,22 @@ class InsertPanel(Panel):
 
     def __init__(
         self,
+        client: viser.ClientHandle,
         site: Site,
         library: Library,
+        offered: Callable[[], tuple[Sequence[str], Sequence[str]]],
         hands: Hands,
         selection: Selection,
         history: History,
-        clicks: GroundClicks,
+        places: Places,
         complain: Callable[[str], None],
     ) -> None:
-        self._library, self._hands, self._selection = library, hands, selection
-        self._history, self._complain = history, complain
+        """Add the controls; `offered` returns models of the model path, and parameters."""
+        self._client, self._library, self._offered, self._hands = client, library, offered, hands
+        self._selection, self._history, self._places = selection, history, places
+        self._complain = complain
         self._lights: Mapping[str, LightSpec] = {}
-        self._refreshes = 0
-        self._look = threading.Thread()
-        gui = site.gui
-        self._places = Places(clicks)
+        gui = client.gui
         place = gui.add_button(
             'Choose the place',
             icon=viser.Icon.MAP_PIN,
@@ -96,51 +95,39 @@ class InsertPanel(Panel):
             self._parameters = Choice(gui, 'Parameter', [NONE], hint='holds a URDF')
             add_parameter = gui.add_button('Insert robot', icon=viser.Icon.PLUS)
             upload = gui.add_upload_button('Upload URDF, xacro or SDF', icon=viser.Icon.UPLOAD)
-        site.on_client_disconnect(self._places.forget)
 
         def rgb() -> Vector:
             red, green, blue = (part / 255.0 for part in colour.value)
             return red, green, blue
 
-        place.on_click(lambda event: self._places.choose(event.client))
+        place.on_click(lambda _: places.choose(client))
         add_shape.on_click(
-            lambda event: self._insert(
-                event.client,
+            lambda _: self._insert(
                 lambda _: library.shape(
                     shape(kind.value, size.value, mass.value, rgb(), static.value)
-                ),
+                )
             )
         )
         add_light.on_click(
-            lambda event: self._insert(
-                event.client, lambda place: library.light(point_light(place, rgb()))
-            )
+            lambda _: self._insert(lambda place: library.light(point_light(place, rgb())))
         )
         remove_light.on_click(lambda _: attempt(self._remove_light, complain))
         add_model.on_click(
-            lambda event: self._insert(
-                event.client,
-                lambda _: library.model(_chosen(self._models.value, 'model on the model path')),
+            lambda _: self._insert(
+                lambda _: library.model(_chosen(self._models.value, 'model on the model path'))
             )
         )
         add_parameter.on_click(
-            lambda event: self._insert(
-                event.client,
+            lambda _: self._insert(
                 lambda _: library.parameter(
                     _chosen(self._parameters.value, 'parameter with a URDF')
-                ),
+                )
             )
         )
         site.receive_files(
             upload,
-            lambda client, name, content: self._insert(
-                client, lambda _: library.file(name, content)
-            ),
+            lambda _, name, content: self._insert(lambda _: library.file(name, content)),
         )
-
-    def open(self) -> None:
-        """Look at once."""
-        self._refreshes = 0
 
     def apply(self, change: SceneChange) -> None:
         """Offer the lights that there are."""
@@ -148,27 +135,20 @@ class InsertPanel(Panel):
         _offer(self._light, tuple(change.lights))
 
     def refresh(self) -> None:
-        """Offer what there is, now and then; a slow simulator delays nothing."""
-        if self._refreshes % LOOKS == 0 and not self._look.is_alive():
-            self._look = threading.Thread(target=self._look_around, daemon=True)
-            self._look.start()
-        self._refreshes += 1
+        """Offer what there is."""
+        models, parameters = self._offered()
+        _offer(self._models, models)
+        _offer(self._parameters, parameters)
 
-    def _look_around(self) -> None:
-        _offer(self._models, [name for name in self._library.models() if name != GROUND_PLANE.name])
-        _offer(self._parameters, self._library.parameters())
-
-    def _insert(
-        self, client: viser.ClientHandle | None, read: Callable[[Vector], ModelText]
-    ) -> None:
-        """Insert what `read` returns for the place of a browser."""
+    def _insert(self, read: Callable[[Vector], ModelText]) -> None:
+        """Insert what `read` returns for the place of the browser."""
 
         def insert() -> None:
-            place = self._places.take(client)
+            place = self._places.take(self._client)
             text = replace(read(place), pose=Pose(place))
             name = self._hands.insert(text, on_ground=True, beside=True)
             self._selection.expect(name)
-            self._history.add(f"insert '{name}'", lambda: self._hands.delete(name))
+            self._history.add(f"insert '{name}'", partial(self._hands.delete, name))
             missing = self._hands.omissions(name)
             if missing:
                 more = f' and {len(missing) - LISTED} more' if len(missing) > LISTED else ''
@@ -184,10 +164,9 @@ class InsertPanel(Panel):
         light = self._lights.get(name)
         if light is None:
             raise SimError('there is no light')
+        text = self._library.light(light)
         self._hands.delete(name)
-        self._history.add(
-            f"delete '{name}'", lambda: self._hands.insert(self._library.light(light))
-        )
+        self._history.add(f"delete '{name}'", partial(self._hands.insert, text))
 
 
 def _offer(choice: Choice, names: Sequence[str]) -> None:

@@ -53,12 +53,15 @@ class JointPanel(Panel):
 
     def __init__(
         self,
-        site: viser.ViserServer,
+        client: viser.ClientHandle,
         joints: Joints,
+        topics: Callable[[], Sequence[CommandTopic]],
         models: Models,
         complain: Callable[[str], None],
     ) -> None:
-        self._site, self._joints, self._models, self._complain = site, joints, models, complain
+        """Add the controls; `topics` returns the newest of `joints.command_topics`."""
+        self._client, self._joints, self._offered = client, joints, topics
+        self._models, self._complain = models, complain
         self._lock = threading.RLock()
         self._topics: Sequence[CommandTopic] = ()
         # Of the sliders: the model, its joints or the topics, what they set, and the range.
@@ -69,7 +72,7 @@ class JointPanel(Panel):
             0.0,
         )
         self._sliders: list[viser.GuiSliderHandle[float]] = []
-        gui = site.gui
+        gui = client.gui
         self._folder = gui.add_folder('Joints', visible=False)
         with self._folder:
             self._of = Choice(gui, 'Of', [NOTHING], hint='a model, or topics of controllers')
@@ -98,9 +101,8 @@ class JointPanel(Panel):
 
     def refresh(self) -> None:
         """Offer the models and topics that there are."""
-        topics = tuple(self._joints.command_topics())
         with self._lock:
-            self._topics = topics
+            self._topics = self._offered()
             names = [model.name for model in tuple(self._models.all.values()) if model.joints]
             options = (NOTHING, *names, *((TOPICS,) if self._topics else ()))
             if options != self._of.names:
@@ -220,8 +222,8 @@ class JointPanel(Panel):
                     sent[0] = now
                     attempt(lambda: command(float(now)), self._complain)
 
-        with self._folder, self._site.atomic():  # nobody moves it before it is listened to
-            slider = self._site.gui.add_slider(
+        with self._folder, self._client.atomic():  # not moved before it is listened to
+            slider = self._client.gui.add_slider(
                 plain(label), low, high, (high - low) / STEPS, sent[0]
             )
             slider.on_update(send)

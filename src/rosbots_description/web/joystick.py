@@ -1,4 +1,4 @@
-"""A joystick for fingers and mouse: a pad in a corner of each browser's picture."""
+"""A joystick for fingers and mouse: a pad in a corner of a browser's picture."""
 
 import math
 import threading
@@ -28,37 +28,37 @@ class _Pad:
 
 
 class Joystick(Panel):
-    """Pads while the box is checked; whoever drags on one steers. Its knob returns when let go."""
+    """A pad while the box is checked. Its knob returns when it is let go."""
 
-    def __init__(self, site: viser.ViserServer, steer: Callable[[float, float], None]) -> None:
+    def __init__(self, client: viser.ClientHandle, steer: Callable[[float, float], None]) -> None:
         """Add the box; `steer` gets ahead and left, -1 to 1, again and again while it is held."""
-        self._site, self._steer = site, steer
+        self._client, self._steer = client, steer
         self._lock = threading.RLock()
         self._ticker = Ticker(PERIOD, self._tick)
-        self._pads: dict[int, _Pad] = {}  # by the numbers of clients
-        self._held: dict[int, tuple[float, float]] = {}
-        self._box = site.gui.add_checkbox(
+        self._pad: _Pad | None = None
+        self._held: tuple[float, float] | None = None
+        self._box = client.gui.add_checkbox(
             'Joystick', initial_value=False, hint='a pad in the picture, for a finger or the mouse'
         )
-        self._box.on_update(lambda _: self.refresh())
-        site.on_client_connect(self._watch)
+        self._box.on_update(lambda _: self._switch())
+        client.camera.on_update(self._follow)
 
-    def refresh(self) -> None:
-        """Give all that look a pad, or none."""
-        clients = self._site.get_clients()
+    def close(self) -> None:
+        """Let go."""
         with self._lock:
-            for gone in self._pads.keys() - clients.keys():
-                del self._pads[gone]
-            if self._box.value:
-                for number in clients.keys() - self._pads.keys():
-                    self._add(clients[number])
-            else:
-                for pad in self._pads.values():
-                    pad.frame.remove()
-                self._pads.clear()
-                self._held.clear()
+            self._held = None
 
-    def _add(self, client: viser.ClientHandle) -> None:
+    def _switch(self) -> None:
+        """Show the pad, or hide it."""
+        with self._lock:
+            if self._box.value and self._pad is None:
+                self._add()
+            elif self._pad is not None and not self._box.value:
+                self._pad.frame.remove()
+                self._pad = self._held = None
+
+    def _add(self) -> None:
+        client = self._client
         scene, height = client.scene, 2.0 * DEPTH * math.tan(client.camera.fov / 2.0)
         with client.atomic():  # what is pressed before it can be dragged would turn the camera
             frame = scene.add_frame(NODE, show_axes=False)
@@ -80,7 +80,7 @@ class Joystick(Panel):
                 cast_shadow=False,
                 receive_shadow=False,
             )
-            pad = self._pads[client.client_id] = _Pad(frame, knob, RADIUS * height)
+            pad = self._pad = _Pad(frame, knob, RADIUS * height)
             place(frame, corner(client.camera))
 
             async def drag(event: viser.SceneNodeDragEvent[viser.CylinderHandle]) -> None:
@@ -89,25 +89,17 @@ class Joystick(Panel):
             for disc in (base, knob):
                 disc.on_drag(drag)
 
-    def _watch(self, client: viser.ClientHandle) -> None:
-        client.camera.on_update(self._follow)
-
     def _follow(self, camera: viser.CameraHandle) -> None:
-        """Keep a pad in its corner."""
+        """Keep the pad in its corner."""
         with self._lock:
-            pad = self._pads.get(camera.client.client_id)
-            if pad is not None:
-                place(pad.frame, corner(camera))
+            if self._pad is not None:
+                place(self._pad.frame, corner(camera))
 
     def _drag(self, event: viser.SceneNodeDragEvent[viser.CylinderHandle], pad: _Pad) -> None:
         with self._lock:
-            # A drag goes on when its pad was removed, and ends when its browser has disconnected.
-            is_there = (
-                self._pads.get(event.client_id) is pad
-                and event.client_id in self._site.get_clients()
-            )
+            is_there = self._pad is pad  # a drag goes on when its pad was removed
             if event.phase == 'end' or not is_there:
-                self._held.pop(event.client_id, None)
+                self._held = None
                 if is_there:
                     pad.knob.position = (0.0, 0.0, 0.0)
                 return
@@ -121,12 +113,12 @@ class Joystick(Panel):
             reach = max(math.hypot(right, down), pad.radius)
             right, down = right / reach, down / reach
             pad.knob.position = (right * pad.radius, down * pad.radius, 0.0)
-            self._held[event.client_id] = -down, -right
+            self._held = -down, -right
             self._ticker.run(True)
 
     def _tick(self) -> None:
         with self._lock:
-            held = next(iter(self._held.values()), None)
+            held = self._held
             if held is None:
                 self._ticker.run(False)
         self._steer(*(held or (0.0, 0.0)))

@@ -50,14 +50,15 @@ class KeyHelp:
             with client.atomic():
                 self._shown[client.client_id] = modal = client.gui.add_modal(TITLE)
                 with modal:
-                    client.gui.add_html(table(self.rows()))
+                    client.gui.add_html(table(self.rows(client)))
                     close = client.gui.add_button(CLOSE)
                     close.on_click(lambda _: self._toggle(client))
 
-    def rows(self) -> list[tuple[str, str]]:
+    def rows(self, client: viser.ClientHandle) -> list[tuple[str, str]]:
         """Return what each key does now, and the keys for it, in alphabetical order."""
         found: dict[str, list[str]] = {}
-        for command in tuple(self._gui._command_handle_from_uuid.values()):  # viser's own list
+        commands = self._gui._command_handle_from_uuid | client.gui._command_handle_from_uuid
+        for command in tuple(commands.values()):  # of viser's own lists
             if command.hotkey is not None and not command.disabled:
                 key = NAMES.get(command.hotkey, command.hotkey)
                 prefix = '' if key == '?' else MODIFIERS[command.modifier]

@@ -5,12 +5,13 @@ import viser
 
 from ..sim.core import Pose
 
+MODELS = '/models'  # the node of all models
 STILL = 1e-6  # [m, and of a quaternion] what nobody sees
 
 
 def model_node(model: str) -> str:
     """Return the name of the node of a model."""
-    return f'/models/{node(model)}'
+    return f'{MODELS}/{node(model)}'
 
 
 def link_node(model: str, link: str) -> str:

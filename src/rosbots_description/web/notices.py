@@ -1,6 +1,7 @@
-"""Sentences to all who look at the page."""
+"""Sentences to those who look at the page."""
 
 import threading
+from collections.abc import Callable, Iterable
 
 import viser
 
@@ -13,10 +14,11 @@ AT_ONCE, RATE = 20.0, 2.0  # notices at once, and in a second
 
 
 class Notices(Panel):
-    """Shows sentences in all browsers, unless there are too many to be read."""
+    """Shows sentences in browsers, unless there are too many to be read."""
 
-    def __init__(self, site: viser.ViserServer) -> None:
-        self._site = site
+    def __init__(self, clients: Callable[[], Iterable[viser.ClientHandle]]) -> None:
+        """Begin; `clients` returns the browsers that are connected."""
+        self._clients = clients
         self._lock = threading.Lock()
         self._allowance = Allowance(AT_ONCE, RATE)
         self._left_out = 0
@@ -38,7 +40,7 @@ class Notices(Panel):
 
     def _show(self, sentence: str) -> None:
         self._allowance.take()
-        for client in self._site.get_clients().values():
+        for client in self._clients():
             show(client, sentence)
 
 

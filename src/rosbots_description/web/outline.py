@@ -1,4 +1,4 @@
-"""A box around what is selected."""
+"""A box around what is selected in a browser."""
 
 import numpy as np
 import viser
@@ -30,17 +30,18 @@ EDGES = np.array(
 class Outline(Panel):
     """Shows a box around each selected link; it moves along as a part of the link's node."""
 
-    def __init__(self, scene: viser.SceneApi, models: Models, selection: Selection) -> None:
-        self._scene, self._models, self._selection = scene, models, selection
+    def __init__(self, client: viser.ClientHandle, models: Models, selection: Selection) -> None:
+        self._scene, self._models, self._selection = client.scene, models, selection
         self._shown: list[str] = []
-        selection.on_change(self._draw)
+        selection.on_change(self.draw)
 
     def apply(self, change: SceneChange) -> None:
         """Draw it again around a model that has changed."""
         if any(model.name == self._selection.model for model in change.models):
-            self._draw()
+            self.draw()
 
-    def _draw(self) -> None:
+    def draw(self) -> None:
+        """Draw the boxes, instead of those before."""
         for name in self._shown:
             self._scene.remove_by_name(name)  # unless it went with its link
         self._shown = []

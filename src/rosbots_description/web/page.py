@@ -4,48 +4,40 @@ import gc
 import logging
 import threading
 import time
-from collections.abc import Callable
-from typing import Protocol
 from weakref import WeakSet
 
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
-from .bar import Bar, TimeControl
-from .camera_keys import CameraKeys
-from .change import ChangePanel, Inspection
+from .bar import Bar
+from .browser_panels import BrowserPanels, Shared, Tabs
 from .clock import Clock
-from .contacts import Contacts, ContactsPanel
-from .drive import DrivePanel, Robots
-from .follow import FollowPanel
-from .gizmo import Gizmo
-from .goals import GoalPanel, Goals
+from .contacts import ContactsPanel
+from .drive import VelocityCommands
+from .faults import FaultList
+from .gizmo import Drags
+from .goals import GoalPanel
 from .ground import Ground
 from .ground_clicks import GroundClicks
-from .hands import Hands, HandsPanel
 from .history import History
-from .insert import InsertPanel, Library
-from .inspector import Inspector
 from .interpolation import Interpolation
-from .joints import JointPanel, Joints
-from .joystick import Joystick
 from .keys import KeyHelp
 from .layout import lay_out
-from .maps import MapPanel, Maps
+from .maps import MapPanel
 from .models import Models
 from .notices import Notices
-from .outline import Outline
 from .panel import Panel
-from .plot import PlotPanel, Signals
+from .place import Places
+from .plot import PlotPanel
+from .polled import Polled
 from .scene import SceneView
-from .selection import Selection
-from .show import ShowPanel
+from .show import add_look
+from .simulator import Simulator
 from .site import Site
 from .start_view import StartView
-from .take_away import TakeAwayPanel, Worlds
-from .topics import ShownTopics, TopicPanel
-from .tree import ModelTree
-from .views import ViewPanel, look
+from .take_away import TakeAwayPanel
+from .topics import TopicPanel
+from .views import look
 from .world_name import WorldName
 
 logger = logging.getLogger(__name__)
@@ -55,167 +47,80 @@ GONE = 'The simulator does not answer. This page shows its last state.'
 BACK = 'The simulator is running again.'
 
 
-class View(Protocol):
-    """The scene of a simulator."""
-
-    def open(
-        self, change: Callable[[SceneChange], None], motion: Callable[[ShownMotion], None]
-    ) -> None:
-        """Begin to call back, from any thread."""
-
-    def close(self) -> None:
-        """End that."""
-
-
-class Simulator(Protocol):
-    """A simulator that can be seen and controlled, by parts."""
-
-    @property
-    def view(self) -> View:
-        """Its scene."""
-
-    @property
-    def time(self) -> TimeControl:
-        """Its clock."""
-
-    @property
-    def robots(self) -> Robots | None:
-        """Its robots, if they can be driven."""
-
-    @property
-    def joints(self) -> Joints | None:
-        """Its joints, if they can be moved."""
-
-    @property
-    def inspection(self) -> Inspection | None:
-        """Its models and links, if they can be changed."""
-
-    @property
-    def contacts(self) -> Contacts | None:
-        """What touches in it, if that can be seen."""
-
-    @property
-    def library(self) -> Library | None:
-        """What can be inserted into it, if anything can."""
-
-    @property
-    def hands(self) -> Hands | None:
-        """What can be done to its models, if anything can."""
-
-    @property
-    def worlds(self) -> Worlds | None:
-        """Its world as a file, if it gives that away."""
-
-    @property
-    def sensors(self) -> ShownTopics | None:
-        """What its robots sense with, if that can be seen."""
-
-    @property
-    def maps(self) -> Maps | None:
-        """Maps of it, and what navigation makes of them, if that can be seen."""
-
-    @property
-    def goals(self) -> Goals | None:
-        """What takes goals and initial poses, if anything does."""
-
-    @property
-    def signals(self) -> Signals | None:
-        """Numbers that can be plotted, if any can."""
-
-
 class Page:
     """Shows a world to all browsers that are connected; without one it does not look at it."""
 
     def __init__(self, site: Site, simulator: Simulator) -> None:
         self._site, self._view = site, simulator.view
         self._lock = threading.RLock()
+        self._changed = threading.Condition(self._lock)  # somebody has entered or left
         self._motions = Interpolation(self._lock, self._move)
         self._new: list[viser.ClientHandle] = []  # those that have not seen the scene yet
+        self._entered: set[int] = set()  # numbers of browsers
         self._gone: WeakSet[viser.ClientHandle] = WeakSet()
+        self.browsers: dict[int, BrowserPanels] = {}  # by their numbers
         self._is_open = self._is_complete = False  # the view, and what it has shown
         self._heard = 0.0  # when the last motion came [s, monotonic]
         self._lost = False
-        notices = Notices(site)
+        notices = Notices(lambda: site.get_clients().values())
         self._notify = notices.tell
         lay_out(site.gui)
         models = Models()
-        self.selection = Selection(models, self._lock)
-        site.gui.add_command('Select nothing', hotkey='escape').on_trigger(
-            lambda _: self.selection.choose(None)
-        )
         self._start = StartView(models)
         name = WorldName(site.gui)
         self._bar = Bar(site.gui, simulator.time, self._notify)
         history = History(site.gui, self._notify)
         clock = Clock(site.gui)
-        views = ViewPanel(site, models, self.selection, self._start)
-        scene = SceneView(site, views.click)
+        scene = SceneView(site, self._click)
         self._ground = Ground(site, models)
+        polled = Polled(simulator)
         self._panels: list[Panel] = [
             models,
             self._start,
             scene,
-            self.selection,
-            Outline(site.scene, models, self.selection),
             self._bar,
             clock,
             name,
             history,
             notices,
-            FollowPanel(site, models, self.selection),
             self._ground,
+            polled,
         ]
+        if simulator.faults is not None:
+            self._panels.append(FaultList(site.gui, simulator.faults, self._notify))
         KeyHelp(site)
-        self._add_tabs(simulator, models, scene, history)
+        clicks = GroundClicks(site)
+        self._shared = Shared(
+            site,
+            simulator,
+            self._lock,
+            models,
+            self._start,
+            history,
+            polled,
+            Places(site, clicks),
+            None if simulator.robots is None else VelocityCommands(simulator.robots),
+            Drags(),
+        )
+        self._tabs = self._add_tabs(simulator, models, scene, clicks)
         site.on_client_connect(self._enter)
         site.on_client_disconnect(self._leave)
 
     def _add_tabs(
-        self, simulator: Simulator, models: Models, scene: SceneView, history: History
-    ) -> None:
+        self, simulator: Simulator, models: Models, scene: SceneView, clicks: GroundClicks
+    ) -> Tabs:
+        """Add the tabs, with what is in them for all browsers; return where the rest is."""
         site = self._site
-        keys, clicks = CameraKeys(site.gui), GroundClicks(site)
         tabs = site.gui.add_tab_group()
+        drive = edit = None
         if simulator.robots is not None:
-            with tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL):
-                drive = DrivePanel(site.gui, simulator.robots, keys)
-                self._panels += [drive, Joystick(site, drive.steer)]
-                if simulator.joints is not None:
-                    self._panels.append(JointPanel(site, simulator.joints, models, self._notify))
-        with tabs.add_tab('Models', viser.Icon.LIST_TREE):
-            if simulator.inspection is not None:
-                self._panels += [
-                    Inspector(site.gui, simulator.inspection, models, self.selection, self._lock),
-                    ChangePanel(
-                        site.gui,
-                        simulator.inspection,
-                        models,
-                        self.selection,
-                        history,
-                        self._notify,
-                    ),
-                ]
-            self._panels.append(ModelTree(site, models, self.selection, self._lock))
+            drive = tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL)
+        inspect = tabs.add_tab('Models', viser.Icon.LIST_TREE)
         if simulator.hands is not None:
-            with tabs.add_tab('Edit', viser.Icon.TOOL):
-                HandsPanel(site.gui, models, self.selection, simulator.hands, history, self._notify)
-                if simulator.library is not None:
-                    self._panels.append(
-                        InsertPanel(
-                            site,
-                            simulator.library,
-                            simulator.hands,
-                            self.selection,
-                            history,
-                            clicks,
-                            self._notify,
-                        )
-                    )
-            self._panels.append(
-                Gizmo(site, models, self.selection, simulator.hands, history, self._notify)
-            )
+            edit = tabs.add_tab('Edit', viser.Icon.TOOL)
         with tabs.add_tab('Show', viser.Icon.EYE):
-            self._panels.append(ShowPanel(site, scene, models, self.selection, self._lock))
+            add_look(site.gui, scene, self._lock)
+            show = site.gui.add_folder(None)
             if simulator.contacts is not None:
                 self._panels.append(ContactsPanel(site, simulator.contacts, self._lock))
         if simulator.sensors is not None:
@@ -234,12 +139,15 @@ class Page:
                 self._panels.append(PlotPanel(site, simulator.signals, self._notify))
         with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
             # First, as a recording stamps what moves after it.
-            self._panels.insert(0, TakeAwayPanel(site, simulator.worlds, self._notify))
+            self._panels.insert(
+                0, TakeAwayPanel(site, simulator.worlds, self._redraw, self._notify)
+            )
+        return Tabs(drive, inspect, edit, show, tabs.order - 0.5)
 
     def poll(self) -> None:
         """Refresh the panels, and report a silent simulator; to be called about twice a second."""
         if self._is_open:
-            for panel in self._panels:
+            for panel in (*self._panels, *self.browsers.values()):
                 panel.refresh()
         elif self._gone:
             gc.collect()  # what viser had for each is a cycle, with megabytes for compression
@@ -252,6 +160,8 @@ class Page:
         with self._lock:
             if client.client_id not in self._site.get_clients():
                 return  # it has disconnected, and `_leave` may have come first
+            self._entered.add(client.client_id)
+            self._changed.notify_all()  # who waits goes on when the lock is free again
             self._new.append(client)
             if not self._is_open:
                 self._is_open, self._is_complete = True, False
@@ -262,12 +172,22 @@ class Page:
                     panel.open()
             elif self._is_complete:
                 self._look()
+            try:
+                self.browsers[client.client_id] = BrowserPanels(client, self._shared, self._tabs)
+            except (KeyError, RuntimeError):
+                if client.client_id in self._site.get_clients():
+                    raise  # else viser has removed what was made so far
 
     def _leave(self, client: viser.ClientHandle) -> None:
         with self._lock:
             if client in self._new:
                 self._new.remove(client)
             self._gone.add(client)
+            self._entered.discard(client.client_id)
+            self._changed.notify_all()
+            browser = self.browsers.pop(client.client_id, None)
+            if browser is not None:
+                browser.close()
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
                 self._view.close()
@@ -279,7 +199,7 @@ class Page:
         with self._lock:
             if change.reset:
                 self._motions.forget()
-            for panel in self._panels:
+            for panel in (*self._panels, *self.browsers.values()):
                 panel.apply(change)
             self._is_complete = True
             if self._new:
@@ -307,5 +227,30 @@ class Page:
             self._motions.take(motion)
 
     def _move(self, motion: ShownMotion) -> None:
-        for panel in self._panels:
+        for panel in (*self._panels, *self.browsers.values()):
             panel.move(motion)
+
+    def _redraw(self, client: viser.ClientHandle) -> None:
+        browser = self._panels_of(client)
+        if browser is not None:
+            with self._lock:
+                browser.redraw()
+
+    def _click(self, model: str, link: str, client: viser.ClientHandle) -> None:
+        browser = self._panels_of(client)
+        if browser is not None:
+            browser.click(model, link)
+
+    def _panels_of(self, client: viser.ClientHandle) -> BrowserPanels | None:
+        """Return the panels of a browser; None: it has left.
+
+        It shows the scene before they are made, so a click may come too early, and waits.
+        """
+        with self._changed:
+            self._changed.wait_for(
+                lambda: (
+                    client.client_id in self._entered
+                    or client.client_id not in self._site.get_clients()
+                )
+            )
+            return self.browsers.get(client.client_id)

@@ -24,7 +24,7 @@ def attempt(command: Callable[[], object], complain: Callable[[str], None]) -> N
 
 
 def fill(field: viser.GuiInputHandle[Value], value: Value) -> None:
-    """Set the value of a field in all browsers."""
+    """Set the value of a field."""
     field.value = value  # type: ignore[misc]  # viser's setter has no type
 
 
@@ -32,10 +32,10 @@ class Panel:
     """A part of the page that shows or controls something; it overrides what it needs."""
 
     def open(self) -> None:
-        """Begin: the first browser has connected."""
+        """Begin: the first browser has connected; of a panel of one browser: this one has."""
 
     def close(self) -> None:
-        """End what costs the simulator anything: the last browser has disconnected."""
+        """End what costs the simulator anything: the last browser, or its own, has left."""
 
     def apply(self, change: SceneChange) -> None:
         """Take in a change of the scene."""

@@ -1,4 +1,4 @@
-"""What is selected on the page, for all browsers alike."""
+"""What is selected in a browser."""
 
 import threading
 from collections.abc import Callable

@@ -12,28 +12,39 @@ from .nodes import link_node
 from .panel import Panel
 from .scene import SceneView
 from .selection import Selection
+from .site import Allow
+
+
+def add_look(gui: viser.GuiApi, view: SceneView, lock: threading.RLock) -> None:
+    """Add the choice of how visuals are drawn, in all browsers alike."""
+    choice = gui.add_dropdown('Visuals', [look.value for look in Look])
+
+    def draw(_event: object) -> None:
+        with lock:
+            view.draw_as(Look(choice.value))
+
+    choice.on_update(draw)
 
 
 class ShowPanel(Panel):
-    """Boxes to check; what is shown of a link is a part of its node and moves along."""
+    """Boxes to check, of one browser; what is shown of a link moves along with its node."""
 
     def __init__(
         self,
-        site: viser.ViserServer,
-        view: SceneView,
+        client: viser.ClientHandle,
         models: Models,
         selection: Selection,
         lock: threading.RLock,
+        allow_viewers: Allow,
     ) -> None:
-        self._site, self._models, self._selection, self._lock = site, models, selection, lock
+        self._client, self._models, self._selection, self._lock = client, models, selection, lock
         self._shown: dict[str, list[str]] = {}  # nodes, by models
-        gui = site.gui
-        self._look = gui.add_dropdown('Visuals', [look.value for look in Look])
-        self._look.on_update(lambda _: self._restyle(view))
+        gui = client.gui
         self._only = gui.add_checkbox('Only of what is selected', False)
         self._boxes = {name: gui.add_checkbox(name, False) for name in MARKERS}
         for box in (self._only, *self._boxes.values()):
-            box.on_update(lambda _: self._draw_all())
+            box.on_update(lambda _: self.draw())
+            allow_viewers(box)
         selection.on_change(self._select)
 
     def apply(self, change: SceneChange) -> None:
@@ -45,14 +56,11 @@ class ShowPanel(Panel):
 
     def _select(self) -> None:
         if self._only.value:
-            self._draw_all()
+            self.draw()
 
-    def _restyle(self, view: SceneView) -> None:
-        with self._lock:
-            view.draw_as(Look(self._look.value))
-
-    def _draw_all(self) -> None:
-        with self._lock, self._site.atomic():
+    def draw(self) -> None:
+        """Show what is checked, and nothing else."""
+        with self._lock, self._client.atomic():
             for model in self._models.all.values():
                 self._draw(model)
 
@@ -68,9 +76,9 @@ class ShowPanel(Panel):
             if not only or chosen in (None, link.name):
                 for name in names:
                     path = f'{link_node(model.name, link.name)}/{name}'
-                    MARKERS[name](self._site.scene, path, model, link)
+                    MARKERS[name](self._client.scene, path, model, link)
                     shown.append(path)
 
     def _erase(self, model: str) -> None:
         for path in self._shown.pop(model, ()):
-            self._site.scene.remove_by_name(path)  # unless it went with its link
+            self._client.scene.remove_by_name(path)  # unless it went with its link

@@ -3,17 +3,21 @@
 import logging
 import socket
 import warnings
+from collections.abc import Callable
 from typing import Any
 from unittest import mock
 
 import rich
 import viser
 import websockets.asyncio.server
+from viser.infra import WebsockClientConnection
 
 from .door import TOKEN, Door, Process, new_token
 from .gate import MAX_MESSAGE, MOST_CLIENTS, Control, Gate, Received
 from .loop_event import leave_to_loop
 from .policy import page_headers
+
+Allow = Callable[..., None]  # as `Site.allow_viewers`
 
 
 class WindowError(Exception):
@@ -67,10 +71,10 @@ class Site(viser.ViserServer):
         serve = websockets.asyncio.server.serve
 
         def serve_here(
-            handler: Any,
-            *_address: Any,
-            process_request: Process,  # noqa: ANN401
-            **options: Any,
+            handler: Any,  # noqa: ANN401
+            *_address: Any,  # noqa: ANN401
+            process_request: Process,
+            **options: Any,  # noqa: ANN401
         ) -> Any:  # noqa: ANN401
             options |= {
                 'max_size': MAX_MESSAGE,
@@ -93,11 +97,15 @@ class Site(viser.ViserServer):
         with mock.patch('websockets.asyncio.server.serve', serve_here):
             super().__init__(host, port, verbose=False)
         leave_to_loop(self._websock_server.get_message_buffer())
-        self._websock_server.on_client_connect(
-            lambda client: leave_to_loop(client.get_message_buffer())
-        )
+        self._websock_server.on_client_connect(self._prepare)
         gate.site = self
         self.on_client_connect(gate.greet)
+        self.on_client_disconnect(gate.forget)
+
+    def _prepare(self, connection: WebsockClientConnection) -> None:
+        leave_to_loop(connection.get_message_buffer())
+        # A recording takes messages to all and to one browser: one at a time.
+        connection._record_lock = self._websock_server._record_lock
 
     def receive_files(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:
         """Call back, on a thread, with browser, name and content of each file of a button."""
@@ -106,6 +114,10 @@ class Site(viser.ViserServer):
     def allow_viewers(self, *controls: Control) -> None:
         """Let browsers that may only look use controls that act on their own browser only."""
         self._gate.allow_viewers(controls)
+
+    def may_control(self, client: viser.ClientHandle) -> bool:
+        """Tell whether a browser may do more than look."""
+        return self._gate.may_control(client)
 
     def request_share_url(self, verbose: bool = True) -> str | None:
         """Refuse to publish this page through viser's servers."""

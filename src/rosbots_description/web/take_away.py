@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import viser
 from PIL import Image
+from viser._messages import FileTransferPart
 
 from ..sim.core import SimError
 from ..sim.description import ShownMotion
@@ -16,7 +17,7 @@ from .site import Site
 from .takes import PATIENCE, SceneTake, Take, VideoTake
 from .text import plain
 
-BACKLOG = 50  # messages for a browser that wait, at most, when another file is sent
+BACKLOG = 50  # parts of files for a browser that wait, at most, when another file is sent
 Click = viser.GuiEvent[viser.GuiButtonHandle]
 Complain = Callable[[str], None]
 
@@ -35,7 +36,14 @@ class Worlds(Protocol):
 class TakeAwayPanel(Panel):
     """Downloads for the browser that asks."""
 
-    def __init__(self, site: Site, worlds: Worlds | None, complain: Complain) -> None:
+    def __init__(
+        self,
+        site: Site,
+        worlds: Worlds | None,
+        redraw: Callable[[viser.ClientHandle], None],
+        complain: Complain,
+    ) -> None:
+        """Add the buttons; `redraw` draws again what a browser has of its own in the scene."""
         self._complain = complain
         self._lock = threading.Lock()
         self._served: set[int] = set()  # browsers that are being given a file
@@ -62,8 +70,9 @@ class TakeAwayPanel(Panel):
                 'recording',
                 'recording.html',
                 'the scene as it moves, as a page that needs no simulator',
-                lambda _: SceneTake(site),
+                lambda client: SceneTake(site, client),
                 complain,
+                redraw,
             ),
         )
         site.on_client_disconnect(self._leave)
@@ -85,8 +94,8 @@ class TakeAwayPanel(Panel):
     def _button(
         self,
         label: str,
-        icon: Any,
-        act: Callable[[viser.ClientHandle], None],  # noqa: ANN401  viser's icons have no type
+        icon: Any,  # noqa: ANN401
+        act: Callable[[viser.ClientHandle], None],
         gui: viser.GuiApi,
         hint: str,
     ) -> viser.GuiButtonHandle:
@@ -111,7 +120,8 @@ class TakeAwayPanel(Panel):
 
 
 def _give_world(worlds: Worlds, client: viser.ClientHandle) -> None:
-    if len(client._websock_connection.get_message_buffer().message_from_id) > BACKLOG:
+    waiting = tuple(client._websock_connection.get_message_buffer().message_from_id.values())
+    if sum(isinstance(message, FileTransferPart) for message in waiting) > BACKLOG:
         raise SimError('this browser does not take what it is sent, so it gets no world')
     text, sentence = worlds.save()
     client.send_file_download('saved.world', text.encode(), save_immediately=True)
@@ -142,8 +152,11 @@ class TakeButton:
         hint: str,
         make: Callable[[viser.ClientHandle], Take],
         complain: Complain,
+        begun: Callable[[viser.ClientHandle], None] = lambda _: None,
     ) -> None:
+        """Add the button; `begun` is called with a browser when its take has begun."""
         self._called, self._file, self._make, self._complain = called, file, make, complain
+        self._begun = begun
         self._lock = threading.Lock()
         self._running: tuple[Take, viser.ClientHandle] | None = None
         self._button = gui.add_button('', icon=viser.Icon.PLAYER_RECORD, hint=hint)
@@ -179,6 +192,7 @@ class TakeButton:
             if begins:
                 self._begin(event.client)
         if begins:
+            self._begun(event.client)
             self._label()
         else:
             self._hand_over()

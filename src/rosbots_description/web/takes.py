@@ -8,8 +8,10 @@ from typing import Any, Protocol
 
 import numpy as np
 import viser
+from viser.infra import StateSerializer
 
 from ..sim.description import ShownMotion
+from .nodes import MODELS
 
 logger = logging.getLogger(__name__)
 
@@ -39,9 +41,17 @@ class Take(Protocol):
 class SceneTake:
     """The scene and its motion, as a page that needs no server."""
 
-    def __init__(self, site: viser.ViserServer) -> None:
-        """Begin with the scene as it is shown."""
+    def __init__(self, site: viser.ViserServer, client: viser.ClientHandle | None = None) -> None:
+        """Begin with the scene as it is shown to all; what a browser has of its own may follow."""
         self._serializer = site.get_scene_serializer()
+        self._own = _OwnNodes(self._serializer)
+        self._lock = site._websock_server._record_lock
+        # Viser's, of messages to the browser.
+        self._recorders: list[Any] = (
+            [] if client is None else client._websock_connection._record_handles
+        )
+        with self._lock:
+            self._recorders.append(self._own)  # type: ignore[arg-type]  # it is called alike
         self._begin: float | None = None  # real time [s]
         self._now = 0.0
         self._poses = 0
@@ -71,7 +81,20 @@ class SceneTake:
 
     def finish(self) -> bytes:
         """Return the page, in HTML."""
+        with self._lock:
+            self._recorders.remove(self._own)
         return self._serializer.as_html().encode()
+
+
+class _OwnNodes:
+    """Adds to a recording what one browser sees at models: boxes and overlays, and no controls."""
+
+    def __init__(self, serializer: StateSerializer) -> None:
+        self._serializer = serializer
+
+    def _insert_message(self, message: Any) -> None:  # noqa: ANN401  viser calls it for each
+        if getattr(message, 'name', '').startswith(f'{MODELS}/'):
+            self._serializer._insert_message(message)
 
 
 class VideoTake:

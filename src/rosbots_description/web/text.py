@@ -20,10 +20,14 @@ _HIDDEN = {'Cc', 'Cf', 'Cs', 'Co', 'Cn', 'Zl', 'Zp'}
 def plain(text: str, most: int = MOST) -> str:
     """Return a text on one line of at most so many characters, without invisible ones."""
     short = text if len(text) <= most else text[: most - 1] + '\u2026'
-    return ''.join(
-        ' ' if one in '\t\n\r' else '\ufffd' if unicodedata.category(one) in _HIDDEN else one
-        for one in short
-    )
+    return ''.join(map(_shown, short))
+
+
+def _shown(character: str) -> str:
+    """Return what is shown of a character: spaces of all widths are one space."""
+    if character in '\t\n\r' or (kind := unicodedata.category(character)) == 'Zs':
+        return ' '
+    return '\ufffd' if kind in _HIDDEN else character
 
 
 def markup(text: str, most: int = MOST) -> str:

@@ -10,6 +10,7 @@ from ..sim.description import SceneChange
 from .models import Models
 from .panel import Panel
 from .selection import Selection
+from .site import Allow
 from .text import Words, plain
 
 MOST = 60  # rows that are shown; what is looked for is found by a part of its name
@@ -31,19 +32,27 @@ class ModelTree(Panel):
     """A button for each model, and below the selected one a button for each of its links."""
 
     def __init__(
-        self, site: viser.ViserServer, models: Models, selection: Selection, lock: threading.RLock
+        self,
+        client: viser.ClientHandle,
+        models: Models,
+        selection: Selection,
+        lock: threading.RLock,
+        allow_viewers: Allow,
     ) -> None:
-        self._site, self._models, self._selection, self._lock = site, models, selection, lock
-        gui = site.gui
+        self._client, self._models, self._selection, self._lock = client, models, selection, lock
+        self._allow_viewers = allow_viewers
+        gui = client.gui
         self._rows: dict[TreeRow, viser.GuiButtonHandle] = {}
         # Used again: if a button is changed and removed between two frames of a browser, viser's
         # page removes it first and then complains of the change.
         self._hidden: list[viser.GuiButtonHandle] = []
         self._find = gui.add_text('Find', '', hint='a part of the name')
         self._find.on_update(lambda _: self._draw())
+        allow_viewers(self._find)
         self._folder = gui.add_folder('In the world')
         self._rest = Words(gui, visible=False)
         selection.on_change(self._draw)
+        self._draw()
 
     def apply(self, _change: SceneChange) -> None:
         """Show models that came, and no longer those that went."""
@@ -73,9 +82,10 @@ class ModelTree(Panel):
             button = self._hidden.pop()
             button.label, button.visible = text, True
         else:
-            with self._folder, self._site.atomic():  # not shown before it is listened to
-                button = self._site.gui.add_button(text)
+            with self._folder, self._client.atomic():  # not shown before it is listened to
+                button = self._client.gui.add_button(text)
                 button.on_click(self._choose)
+                self._allow_viewers(button)
         return button
 
     def _wanted(self) -> Iterator[TreeRow]:

@@ -17,7 +17,7 @@ from .descriptions import chosen_links
 from .models import Models
 from .panel import Panel
 from .selection import Selection
-from .site import Site
+from .site import Allow
 from .start_view import StartView
 
 ROOM = 1.1  # around what is looked at
@@ -30,9 +30,17 @@ DOUBLE = 0.4  # [s, wall] from the first click of a double click to the second, 
 class ViewPanel(Panel):
     """The view of a browser: as at first, from the top, from ahead, or as it is, but nearer."""
 
-    def __init__(self, site: Site, models: Models, selection: Selection, start: StartView) -> None:
-        self._models, self._selection = models, selection
-        self._clicked = (-1, '', -math.inf)  # last: client, model, and when [s, monotonic]
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        models: Models,
+        selection: Selection,
+        start: StartView,
+        order: float,
+        allow_viewers: Allow,
+    ) -> None:
+        self._camera, self._models, self._selection = client.camera, models, selection
+        self._clicked = ('', -math.inf)  # last: model, and when [s, monotonic]
         looks: dict[str, tuple[viser.IconName, str, Callable[[viser.CameraHandle], None]]] = {
             'Home': (Icon.HOME, 'H', lambda camera: look(camera, *start.choose(camera.aspect))),
             'Top': (
@@ -57,20 +65,19 @@ class ViewPanel(Panel):
             ),
         }
         for name, (icon, key, turn) in looks.items():
-            button = site.gui.add_button(name, icon=icon)
+            button = client.gui.add_button(name, icon=icon, order=order)
             button.on_click(partial(_turn, turn))
-            site.allow_viewers(button)
-            command = site.gui.add_command(f'View: {name}', hotkey=key)  # type: ignore[arg-type]  # any
+            command = client.gui.add_command(f'View: {name}', hotkey=key)  # type: ignore[arg-type]  # any
             command.on_trigger(partial(_turn, turn))
-            site.allow_viewers(command)
+            allow_viewers(button, command)
 
-    def click(self, model: str, link: str, client: viser.ClientHandle) -> None:
-        """Select what a browser clicked on; the second click of two goes there."""
-        *last, moment = self._clicked
-        self._clicked = client.client_id, model, time.monotonic()
-        if last == [client.client_id, model] and self._clicked[2] - moment < DOUBLE:
-            with client.atomic():
-                self._fit(client.camera, self._chosen())
+    def click(self, model: str, link: str) -> None:
+        """Select what the browser clicked on; the second click of two goes there."""
+        last, moment = self._clicked
+        self._clicked = model, time.monotonic()
+        if last == model and self._clicked[1] - moment < DOUBLE:
+            with self._camera.client.atomic():
+                self._fit(self._camera, self._chosen())
         else:
             self._selection.click(model, link)
 

@@ -1,5 +1,6 @@
 """rosbots-view: what it prints, its exit codes, and the page that it serves."""
 
+import logging
 import os
 import re
 import signal
@@ -10,19 +11,30 @@ from contextlib import contextmanager
 import pytest
 from support import ROOT
 from support.browser import Browser
+from support.crashing import CRASHING, crash
 from support.patience import PATIENCE
 
 from rosbots_description.cli import view
+from rosbots_description.sim.core import Fault
+from rosbots_description.sim.physics.bullet.engine import Engine
 
 ROBOT = ROOT / 'urdf' / 'rosbots.xacro'
+IN_BACKGROUND = 'sh', '-c', 'trap "" INT; exec "$@"', 'sh'
 ADDRESS = re.compile(r'rosbots-view: the world is at (http://\S+)')
 
 
 @contextmanager
-def viewing(*arguments):
-    """Yield the lines that the program prints, and the process."""
+def viewing(*arguments, in_background=False):
+    """Yield the process; in the background of a script it ignores Ctrl-C."""
     process = subprocess.Popen(
-        [sys.executable, '-m', 'rosbots_description.cli.view', *map(str, arguments), '--no-open'],
+        [
+            *(IN_BACKGROUND if in_background else ()),
+            sys.executable,
+            '-m',
+            'rosbots_description.cli.view',
+            *map(str, arguments),
+            '--no-open',
+        ],
         stderr=subprocess.PIPE,
         text=True,
         env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(ROOT / 'src'), *sys.path])},
@@ -34,9 +46,12 @@ def viewing(*arguments):
         process.communicate(timeout=PATIENCE)
 
 
-@pytest.mark.parametrize('end', [signal.SIGINT, signal.SIGTERM])
-def test_the_page_of_a_robot_opens_and_ends_with_a_signal(end):
-    with viewing(ROBOT, '--paused') as process:
+@pytest.mark.parametrize(
+    ('end', 'in_background'),
+    [(signal.SIGINT, False), (signal.SIGTERM, False), (signal.SIGTERM, True)],
+)
+def test_the_page_of_a_robot_opens_and_ends_with_a_signal(end, in_background):
+    with viewing(ROBOT, '--paused', in_background=in_background) as process:
         address = None
         while address is None:
             line = process.stderr.readline()
@@ -71,6 +86,17 @@ def test_a_broken_file_ends_with_one_sentence(tmp_path, capsys, name, content, s
     assert str(path) in line
 
 
+def test_a_file_that_crashes_the_engine_ends_with_one_sentence(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(Engine, 'add', crash)
+    path = tmp_path / 'a.urdf'
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    link = f'<link name="{CRASHING}">{inertial}</link>'
+    path.write_text(f'<robot name="r">{link}</robot>', encoding='utf-8')
+    assert view.main([str(path), '--no-open']) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "model 'r' is rejected" in line
+
+
 @pytest.mark.parametrize(
     ('arguments', 'sentence'),
     [
@@ -91,7 +117,12 @@ def test_missing_viser_is_named(monkeypatch, capsys):
 
 
 def test_many_faults_are_counted(capsys):
-    view._list([f'fault {number}' for number in range(view.MOST_FAULTS + 3)])
+    view._list([Fault(f'fault {number}') for number in range(view.MOST_FAULTS + 3)])
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == view.MOST_FAULTS + 1
     assert lines[-1] == 'rosbots-view: and 3 more'
+
+
+def test_the_worst_fault_comes_first_and_none_twice(capsys):
+    view._list([Fault('minor'), Fault('grave', logging.ERROR), Fault('minor', step=2)])
+    assert capsys.readouterr().err == 'rosbots-view: grave\nrosbots-view: minor\n'

@@ -37,11 +37,10 @@ def written(folder, name, text):
     ],
 )
 def test_a_model_stands_on_the_ground(tmp_path, name, text, height):
-    opened = open_file(written(tmp_path, name, text))
-    with opened.world as world:
+    with open_file(written(tmp_path, name, text)) as world:
         robot = world.model(name.partition('.')[0])
         assert robot.pose.position[2] == pytest.approx(height)
-        assert opened.faults == ()
+        assert list(world.faults) == []
         world.reset_world()
         assert robot.pose.position[2] == pytest.approx(height)
 
@@ -50,15 +49,14 @@ def test_xacro_takes_arguments(tmp_path):
     text = URDF.replace('<robot', '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"', 1).replace(
         'name="box"', 'name="$(arg link)"'
     )
-    with open_file(written(tmp_path, 'a.xacro', text), {'link': 'given'}).world as world:
+    with open_file(written(tmp_path, 'a.xacro', text), {'link': 'given'}) as world:
         assert list(world.model('crate').links) == ['given']
 
 
 def test_the_robot_of_this_package_has_all_its_parts():
-    opened = open_file(ROOT / 'urdf' / 'rosbots.xacro')
-    with opened.world as world:
+    with open_file(ROOT / 'urdf' / 'rosbots.xacro') as world:
         assert world.model('rosbots').left_out == []
-        assert any('not read by this plugin: <legacyMode>' in fault for fault in opened.faults)
+        assert any('not read by this plugin: <legacyMode>' in str(fault) for fault in world.faults)
 
 
 def test_a_robot_that_is_fixed_to_the_world_stays_where_it_is_described(tmp_path):
@@ -67,22 +65,22 @@ def test_a_robot_that_is_fixed_to_the_world_stays_where_it_is_described(tmp_path
         '<link name="world"/><joint name="j" type="fixed">'
         '<parent link="world"/><child link="box"/></joint></robot>',
     )
-    with open_file(written(tmp_path, 'a.urdf', text)).world as world:
+    with open_file(written(tmp_path, 'a.urdf', text)) as world:
         assert world.model('crate').pose.position[2] == 0.0
 
 
 @pytest.mark.parametrize('name', ['a.world', 'a.sdf'])
 def test_a_world_file_is_opened_and_what_is_missing_named(tmp_path, name):
-    opened = open_file(written(tmp_path, name, WORLD))
-    with opened.world as world:
+    with open_file(written(tmp_path, name, WORLD)) as world:
         assert list(world.models) == ['ground_plane']
-        (fault,) = opened.faults
-        assert 'line 1' in fault
-        assert 'GAZEBO_MODEL_PATH' in fault
+        (fault,) = world.faults
+        assert fault.line == 1
+        assert 'line 1' in str(fault)
+        assert 'GAZEBO_MODEL_PATH' in str(fault)
 
 
 def test_included_worlds_are_opened_by_name():
-    with open_file('room').world as world:
+    with open_file('room') as world:
         assert len(world.models) > 1
 
 
@@ -96,11 +94,10 @@ def test_meshes_beside_the_file_are_found(tmp_path):
         'endloop\nendfacet\nendsolid s\n',
         encoding='utf-8',
     )
-    with open_file(tmp_path / 'cube.stl.urdf').world:
+    with open_file(tmp_path / 'cube.stl.urdf'):
         pass
-    opened = open_file(tmp_path / 'missing.stl.urdf')
-    with opened.world as world:
-        assert any('missing.stl' in fault and 'line ' in fault for fault in opened.faults)
+    with open_file(tmp_path / 'missing.stl.urdf') as world:
+        assert any('missing.stl' in fault.what and fault.line for fault in world.faults)
         assert world.model('r').left_out
 
 
@@ -109,10 +106,12 @@ def test_faults_are_collected_and_not_logged_meanwhile(tmp_path, caplog):
         '</robot>', '<gazebo><plugin name="p" filename="libnone.so"/></gazebo></robot>'
     )
     with caplog.at_level(logging.WARNING):
-        opened = open_file(written(tmp_path, 'a.urdf', text))
-    with opened.world:
-        assert any("unknown library 'libnone.so'" in fault for fault in opened.faults)
+        world = open_file(written(tmp_path, 'a.urdf', text))
+    with world:
+        assert any("unknown library 'libnone.so'" in str(fault) for fault in world.faults)
         assert caplog.records == []
+        world.faults.report('later')
+        assert caplog.messages == ['later']
 
 
 @pytest.mark.parametrize(

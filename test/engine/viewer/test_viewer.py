@@ -5,11 +5,13 @@ from contextlib import contextmanager
 
 import pytest
 from support.browser import Browser
+from support.crashing import CRASHING, crash
 from support.patience import PATIENCE, wait_until
 
 from rosbots_description.sim import Pose, SimError, Twist, World
 from rosbots_description.sim.description import CommandTopic, ModelText
-from rosbots_description.viewer import Viewer, scene
+from rosbots_description.sim.physics.bullet.engine import Engine
+from rosbots_description.viewer import Viewer, open_sandbox, scene
 from rosbots_description.web import Site
 
 ROBOT = 'package://rosbots_description/urdf/rosbots.xacro'
@@ -219,6 +221,14 @@ def test_shapes_lights_and_files_are_inserted_on_the_ground(world):
         assert viewer.hands.insert(sun) == 'sun_0'
         viewer.hands.delete('sun_0')
         assert set(world.lights) == {'sun'}
+
+
+def test_a_model_that_crashes_the_engine_is_refused_and_the_world_goes_on(world, monkeypatch):
+    monkeypatch.setattr(Engine, 'add', crash)
+    with open_sandbox() as sandbox, viewing(world, sandbox=sandbox) as viewer:
+        with pytest.raises(SimError, match=r'it crashed the physics engine \(SIGSEGV\)'):
+            viewer.hands.insert(ModelText('', CRATE.replace('"box"', f'"{CRASHING}"')))
+        assert viewer.hands.insert(ModelText('', CRATE)) == 'crate'
 
 
 @pytest.mark.parametrize(

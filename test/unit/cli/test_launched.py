@@ -17,7 +17,8 @@ from rosbots_description.cli.launched import Launched, descendants
             '[ERROR] [1.5, 0.0]: no such mesh (see {log})',
         ),
         (
-            '\x1b]2;title\x07\x1b[31m[gazebo-2] process has died [pid 7, exit code 1, cmd /a/b c].\x1b[0m',
+            '\x1b]2;title\x07\x1b[31m[gazebo-2] process has died [pid 7, exit code 1, cmd /a/b '
+            'c].\x1b[0m',
             '[gazebo-2] process has died [pid 7, exit code 1] (see {log})',
         ),
         ('done\n', 'see {log}'),

@@ -27,5 +27,5 @@ def page(site, simulator):
 @pytest.fixture
 def browser(site, simulator, page):
     with Browser(site.address) as browser:
-        browser.wait_until(lambda: simulator.change)
+        browser.wait_until(lambda: simulator.change and page.browsers)
         yield browser

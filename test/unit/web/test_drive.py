@@ -5,7 +5,7 @@ from support.browser import Browser
 
 from rosbots_description.web import drive
 from rosbots_description.web.camera_keys import CameraKeys
-from rosbots_description.web.drive import DrivePanel
+from rosbots_description.web.drive import DrivePanel, VelocityCommands
 
 STOP = ('/b/cmd_vel', 0.0, 0.0)
 
@@ -30,7 +30,13 @@ def robots():
 
 @pytest.fixture
 def panel(site, robots):
-    return DrivePanel(site.gui, robots, CameraKeys(site.gui))
+    return DrivePanel(
+        site.gui,
+        VelocityCommands(robots),
+        robots.drive_topics,
+        CameraKeys(site.gui),
+        site.allow_viewers,
+    )
 
 
 @pytest.fixture
@@ -82,7 +88,7 @@ def test_a_held_button_goes_on_and_stop_ends_it_once(browser, robots, panel, mon
         browser.hold('Backward')
         browser.wait_until(lambda count=count: len(robots.commands) == count)
     assert robots.commands == [('/b/cmd_vel', -0.5, 0.0)] * 5
-    end = panel._ends['/b/cmd_vel']
+    end = panel._velocities._ends['/b/cmd_vel']
     browser.press('K')
     browser.wait_until(lambda: robots.commands[-1] == STOP)
     end.join(timeout=60.0)  # it was cancelled: it sends nothing more

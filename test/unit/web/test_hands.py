@@ -4,7 +4,7 @@ import threading
 
 import pytest
 from support.browser import Browser
-from support.window import clock, model
+from support.window import clock, model, selection
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import ModelText, SceneChange
@@ -18,7 +18,7 @@ TEXT = ModelText('a', 'text', pose=Pose((1.0, 0.0, 0.0)))
 def chosen(browser, simulator, page):
     """A browser with the model 'a' at (1, 0, 0) selected."""
     simulator.change(SceneChange(True, (model('a', 1, position=(1.0, 0.0, 0.0)), model('b', 2))))
-    page.selection.choose('a')
+    selection(page).choose('a')
     browser.wait_until(lambda: NODE in browser.nodes)
     return browser
 
@@ -41,7 +41,7 @@ def test_duplicate_is_beside_it_and_selected(chosen, simulator, page):
     chosen.wait_until(lambda: chosen.control("Undo: duplicate 'a'"))
     assert simulator.told == [('describe', 'a'), ('insert', TEXT, False, True)]
     simulator.change(SceneChange(models=(model('new a', 9),)))
-    assert page.selection.model == 'new a'
+    assert selection(page).model == 'new a'
     chosen.click("Undo: duplicate 'a'")
     chosen.wait_until(lambda: simulator.told[-1] == ('delete', 'new a'))
 
@@ -51,7 +51,7 @@ def test_push_acts_on_the_selected_link_else_on_the_canonical_one(chosen, simula
     chosen.choose('Duration [s]', 0.5)
     chosen.click('Push')
     chosen.wait_until(lambda: len(simulator.told) == 1)
-    page.selection.choose('b', 'link')
+    selection(page).choose('b', 'link')
     chosen.choose('Axes of the', 'link')
     chosen.click('Push')
     chosen.wait_until(lambda: len(simulator.told) == 2)
@@ -70,7 +70,7 @@ def test_refusal_is_shown_and_nothing_can_be_undone(chosen, simulator):
 
 
 def test_without_a_selection_nothing_is_done(chosen, simulator, page):
-    page.selection.choose(None)
+    selection(page).choose(None)
     chosen.wait_until(lambda: NODE not in chosen.nodes)
     chosen.click('Delete')
     chosen.press('delete')
@@ -82,14 +82,14 @@ def test_gizmo_is_at_the_selected_model_and_follows_it(chosen, simulator, page):
     assert chosen.nodes[NODE][1] == [1.0, 0.0, 0.0]
     simulator.motion(clock(_1=Pose((2.0, 3.0, 4.0))))
     chosen.wait_until(lambda: chosen.nodes[NODE][1] == [2.0, 3.0, 4.0])
-    page.selection.choose('b')
+    selection(page).choose('b')
     chosen.wait_until(lambda: chosen.nodes[NODE][1] == [0.0, 0.0, 0.0])
 
 
 def test_choosing_a_link_of_the_model_does_not_end_a_drag(chosen, simulator, page):
     chosen.grab(NODE)
     chosen.wait_until(lambda: moves(simulator))
-    page.selection.choose('a', 'link')
+    selection(page).choose('a', 'link')
     chosen.drag(NODE, [1.0, 2.0, 3.0])
     chosen.wait_until(lambda: moves(simulator)[-1] == (1.0, 2.0, 3.0))
     chosen.let_go(NODE)
@@ -147,9 +147,16 @@ def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, site, monke
     assert calls == [(1.0, 0.0, 0.0), (99.0, 0.0, 0.0)]
 
 
+def select_too(other):
+    """Select the model in another browser."""
+    other.wait_until(lambda: '/models/a/link/0 v' in other.nodes)
+    other.click_node('/models/a/link/0 v')
+    other.wait_until(lambda: NODE in other.nodes)
+
+
 def test_browser_that_ends_while_it_drags_releases_the_model(chosen, simulator, site):
     with Browser(site.address) as other:
-        other.wait_until(lambda: NODE in other.nodes)
+        select_too(other)
         other.grab(NODE)
         other.drag(NODE, [5.0, 0.0, 0.0])
         chosen.wait_until(lambda: moves(simulator)[-1:] == [(5.0, 0.0, 0.0)])
@@ -161,7 +168,7 @@ def test_browser_that_ends_while_it_drags_releases_the_model(chosen, simulator, 
 
 def test_of_two_browsers_the_one_that_grabbed_last_moves_it(chosen, simulator, site):
     with Browser(site.address) as other:
-        other.wait_until(lambda: NODE in other.nodes)
+        select_too(other)
         chosen.grab(NODE)
         chosen.wait_until(lambda: moves(simulator))
         other.grab(NODE)
@@ -188,7 +195,7 @@ def test_model_that_goes_ends_the_drag_in_a_sentence(chosen, simulator):
 def test_another_selection_releases_the_model(chosen, simulator, page):
     chosen.grab(NODE)
     chosen.wait_until(lambda: moves(simulator))
-    page.selection.choose('b')
+    selection(page).choose('b')
     chosen.wait_until(lambda: simulator.told[-1][3] == 0.0)
     told = len(simulator.told)
     chosen.read(3 * gizmo.PERIOD)

@@ -2,11 +2,11 @@
 
 import pytest
 from support.browser import Browser
-from support.window import model
+from support.window import model, selection
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Box, Cylinder, SceneChange, Sphere
-from rosbots_description.web import insert, uploads
+from rosbots_description.web import uploads
 from rosbots_description.web.ground_clicks import on_ground
 from rosbots_description.web.shapes import point_light, shape
 
@@ -72,11 +72,12 @@ def test_models_of_the_model_path_are_offered(ready, simulator, page):
     ready.click('Insert model')
     ready.wait_until(lambda: 'there is no model on the model path' in ready.notes())
     simulator.names = ['table', 'ground_plane', 'chair']
-    for _ in range(insert.LOOKS):
-        page.poll()
     ready.wait_until(
-        lambda: any(
-            props.get('options') == ['table', 'chair'] for _, props in ready.controls.values()
+        lambda: (
+            page.poll()
+            or any(
+                props.get('options') == ['table', 'chair'] for _, props in ready.controls.values()
+            )
         )
     )
     ready.choose('Model path', 'chair')
@@ -89,7 +90,7 @@ def test_file_is_uploaded_and_what_it_becomes_is_selected(ready, simulator, page
     ready.upload(UPLOAD, '../../a.urdf', 1500 * b'x')
     ready.wait_until(lambda: ready.control("Undo: insert 'new '"))
     simulator.change(SceneChange(True, (model('new ', 1),)))
-    assert page.selection.model == 'new '
+    assert selection(page).model == 'new '
     assert inserted(simulator)[0].xml == '../../a.urdf: ' + 1500 * 'x'
 
 

@@ -47,7 +47,7 @@ def complaints():
 
 @pytest.fixture
 def panel(site, joints, models, complaints):
-    panel = JointPanel(site, joints, models, complaints.append)
+    panel = JointPanel(site, joints, joints.command_topics, models, complaints.append)
     panel.refresh()
     return panel
 

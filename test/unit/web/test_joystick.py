@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 import viser
-from support.browser import Browser
+from support.browser import CAMERA, Browser
 from support.patience import wait_until
 
 from rosbots_description.web.joystick import DEPTH, NODE, RADIUS, Joystick, _corner, corner
@@ -20,14 +20,25 @@ def commands():
 
 
 @pytest.fixture
-def joystick(site, commands):
-    return Joystick(site, lambda *command: commands.append(command))
+def joysticks(site, commands):
+    """Those of the browsers that have connected, by their numbers."""
+    made = {}
+
+    @site.on_client_connect
+    def _(client):
+        made[client.client_id] = Joystick(client, lambda *command: commands.append(command))
+
+    return made
 
 
 @pytest.fixture
-def browser(site, joystick):
+def joystick(browser, joysticks):
+    return next(iter(joysticks.values()))
+
+
+@pytest.fixture
+def browser(site, joysticks):
     with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control('Joystick') and site.get_clients())
         browser.choose('Joystick', True)
         browser.wait_until(lambda: KNOB in browser.nodes)
         yield browser
@@ -36,7 +47,7 @@ def browser(site, joystick):
 def drag(browser, joystick, phase, right=0.0, down=0.0, node=KNOB):
     """Drag the knob, or another node, to a place on the pad, in parts of its radius."""
     at = [0.0, 0.0, 0.0]
-    for pad in joystick._pads.values():
+    if (pad := joystick._pad) is not None:
         # The camera of the browser looks ahead along z, x is right and y is down.
         at = [float(part) for part in pad.frame.position]
         at[0] += right * pad.radius
@@ -93,6 +104,19 @@ def test_it_stays_there_while_the_camera_moves_and_only_while_it_is_there(
     assert 'Traceback' not in capfd.readouterr().err  # viser prints what its callbacks raise
 
 
+def test_its_discs_are_thin_and_face_the_camera(browser, joystick):
+    """So they are round also in a corner of the picture."""
+    turned = [0.5, 0.5, 0.5, 0.5]
+    browser.send({**CAMERA, 'wxyz': turned})
+    browser.wait_until(lambda: browser.nodes[NODE][2] == turned)
+    discs = [m['props'] for m in browser.messages if m['type'] == 'CylinderMessage']
+    assert len(discs) == 2
+    assert all(disc['height'] < 0.2 * disc['radius'] for disc in discs)
+    assert all(
+        browser.nodes[f'{NODE}/{name}'][2] == [1.0, 0.0, 0.0, 0.0] for name in ('pad', 'knob')
+    )
+
+
 def test_it_steers_while_it_is_held_and_then_stops(browser, joystick, commands):
     drag(browser, joystick, 'start')
     drag(browser, joystick, 'update', right=-0.5, down=-0.5)
@@ -102,7 +126,7 @@ def test_it_steers_while_it_is_held_and_then_stops(browser, joystick, commands):
     told = len(commands)
     browser.read(0.4)
     assert len(commands) == told
-    assert tuple(next(iter(joystick._pads.values())).knob.position) == (0.0, 0.0, 0.0)
+    assert tuple(joystick._pad.knob.position) == (0.0, 0.0, 0.0)
 
 
 def test_a_finger_anywhere_on_the_pad_steers(browser, joystick, commands):
@@ -113,7 +137,7 @@ def test_a_finger_anywhere_on_the_pad_steers(browser, joystick, commands):
     browser.wait_until(lambda: commands[-1] == (0.0, 0.0))
 
 
-def test_it_can_be_dragged_as_soon_as_it_is_there(site, joystick, monkeypatch):
+def test_it_can_be_dragged_as_soon_as_it_is_there(site, joysticks, monkeypatch):
     """Else a press would turn the camera: a browser shows all of a window of messages at once."""
     add = viser.SceneApi.add_cylinder
 
@@ -125,7 +149,6 @@ def test_it_can_be_dragged_as_soon_as_it_is_there(site, joystick, monkeypatch):
     monkeypatch.setattr(viser.SceneApi, 'add_cylinder', add_slowly)
     windows = {}
     with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control('Joystick') and site.get_clients())
         take = browser._take
 
         def note(message):
@@ -180,11 +203,11 @@ def test_a_pad_that_is_removed_while_it_is_dragged_lets_go(
     assert 'Traceback' not in capfd.readouterr().err
 
 
-def test_each_browser_has_its_own_while_the_box_is_checked(browser, joystick, site):
+def test_each_browser_has_its_own(browser, joystick, site):
     with Browser(site.address) as second:
-        second.wait_until(lambda: len(site.get_clients()) == 2)
-        joystick.refresh()
+        second.choose('Joystick', True)
         second.wait_until(lambda: KNOB in second.nodes)
         browser.choose('Joystick', False)
-        second.wait_until(lambda: KNOB not in second.nodes)
-    browser.wait_until(lambda: KNOB not in browser.nodes)
+        browser.wait_until(lambda: KNOB not in browser.nodes)
+        second.read(0.1)
+        assert KNOB in second.nodes

@@ -173,10 +173,11 @@ def test_the_clock_shows_times_and_the_real_time_factor(browser, simulator):
     browser.wait_until(
         lambda: any('00:00:10.500' in text and '0.50\u00d7' in text for text in browser.texts())
     )
+    # as a tooltip
     assert any(
         'real time 00:00:21.000, 10500 iterations' in props.get('content', '')
         for _, props in browser.controls.values()
-    )  # as a tooltip
+    )
     simulator.motion(clock(0.0, 22.0))  # reset
     simulator.motion(clock(2.0, 23.0, paused=True))
     browser.wait_until(lambda: any('paused' in text for text in browser.texts()))

@@ -1,8 +1,7 @@
-"""What is selected: by clicks, for all browsers, and no longer than it exists."""
+"""What is selected: by clicks, in each browser, and no longer than it exists."""
 
 import pytest
-from support.browser import Browser
-from support.window import clock, model
+from support.window import clock, model, selection
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Plane, SceneChange, ShownLink, ShownModel
@@ -27,24 +26,20 @@ def test_a_click_selects_the_model_and_a_second_one_its_link(
     browser.click_node(CLICK)
     browser.wait_until(lambda: BOX in browser.nodes)
     browser.wait_until(lambda: '/models/a/other/selected' in browser.nodes)
-    assert (page.selection.model, page.selection.link) == ('a', None)
+    assert (selection(page).model, selection(page).link) == ('a', None)
     browser.click_node(CLICK)
     browser.wait_until(lambda: '/models/a/other/selected' not in browser.nodes)
-    assert (page.selection.model, page.selection.link) == ('a', 'link')
-    with Browser(site.address) as second:
-        second.wait_until(lambda: BOX in second.nodes)
-        second.click_node('/models/b/link/0 v')
-        browser.wait_until(lambda: '/models/b/link/selected' in browser.nodes)
-    assert BOX not in browser.nodes
+    assert (selection(page).model, selection(page).link) == ('a', 'link')
     browser.press('escape')
-    browser.wait_until(lambda: '/models/b/link/selected' not in browser.nodes)
-    assert page.selection.model is None
+    browser.wait_until(lambda: BOX not in browser.nodes)
+    assert selection(page).model is None
 
 
 def test_the_box_is_around_what_is_seen(browser, simulator, page, site):
     simulator.change(SceneChange(True, (model('a', 1),)))
-    page.selection.choose('a')
-    points = site.scene.get_handle_by_name(BOX).points.reshape(-1, 3)
+    selection(page).choose('a')
+    (client,) = site.get_clients().values()
+    points = client.scene.get_handle_by_name(BOX).points.reshape(-1, 3)
     assert points.min(axis=0) == pytest.approx([-0.5, -0.5, 0.5], abs=0.02)
     assert points.max(axis=0) == pytest.approx([0.5, 0.5, 1.5], abs=0.02)
 
@@ -64,26 +59,26 @@ def test_it_survives_a_simulator_that_numbers_anew_and_a_model_that_changes(
     browser, simulator, page
 ):
     simulator.change(SceneChange(True, (two_links('a', 1),)))
-    page.selection.choose('a', 'other')
+    selection(page).choose('a', 'other')
     simulator.change(SceneChange(True, (two_links('a', 7),)))
     simulator.change(SceneChange(models=(two_links('a', 9),), removed=('a',)))
-    assert (page.selection.model, page.selection.link) == ('a', 'other')
+    assert (selection(page).model, selection(page).link) == ('a', 'other')
     simulator.change(SceneChange(models=(model('a', 11, Plane()),), removed=('a',)))
-    assert (page.selection.model, page.selection.link) == ('a', None)
+    assert (selection(page).model, selection(page).link) == ('a', None)
     simulator.change(SceneChange(models=(model('a', 12),), removed=('a',)))
     browser.wait_until(lambda: BOX in browser.nodes)  # it was drawn again
 
 
 def test_it_ends_when_the_model_goes(browser, simulator, page):
     seen = []
-    page.selection.on_change(lambda: seen.append(page.selection.model))
+    selection(page).on_change(lambda: seen.append(selection(page).model))
     simulator.change(SceneChange(True, (model('a', 1), model('b', 2))))
-    page.selection.choose('a')
-    page.selection.choose('a')
+    selection(page).choose('a')
+    selection(page).choose('a')
     simulator.change(SceneChange(removed=('a',)))
-    page.selection.choose('nobody')
-    page.selection.choose('b', 'no link')
-    assert (page.selection.model, page.selection.link) == ('b', None)
+    selection(page).choose('nobody')
+    selection(page).choose('b', 'no link')
+    assert (selection(page).model, selection(page).link) == ('b', None)
     simulator.change(SceneChange(True))
     assert seen == ['a', None, 'b', None]
 
@@ -105,20 +100,20 @@ def test_models_know_where_they_are():
 
 def test_what_is_expected_is_selected_when_it_comes(simulator, page, browser):
     simulator.change(SceneChange(True, (model('a', 1),)))
-    page.selection.choose('a')
-    page.selection.expect('b')
-    assert page.selection.model == 'a'
+    selection(page).choose('a')
+    selection(page).expect('b')
+    assert selection(page).model == 'a'
     simulator.change(SceneChange(models=(model('c', 2),)))
-    assert page.selection.model == 'a'
+    assert selection(page).model == 'a'
     simulator.change(SceneChange(models=(model('b', 3),)))
-    assert page.selection.model == 'b'
-    page.selection.expect('c')
-    assert page.selection.model == 'c'
+    assert selection(page).model == 'b'
+    selection(page).expect('c')
+    assert selection(page).model == 'c'
 
 
 def test_another_choice_ends_the_expectation(simulator, page, browser):
     simulator.change(SceneChange(True, (model('a', 1),)))
-    page.selection.expect('b')
-    page.selection.choose('a')
+    selection(page).expect('b')
+    selection(page).choose('a')
     simulator.change(SceneChange(models=(model('b', 2),)))
-    assert page.selection.model == 'a'
+    assert selection(page).model == 'a'

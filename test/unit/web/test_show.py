@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.browser import CAMERA, Browser
 from support.patience import wait_until
-from support.window import clock, model
+from support.window import clock, model, selection
 
 from rosbots_description.sim.core import Pose, from_rpy
 from rosbots_description.sim.description import (
@@ -88,10 +88,10 @@ def test_only_what_is_selected_is_marked_if_that_is_asked_for(browser, simulator
     simulator.change(SceneChange(True, (ROBOT, model('other', 9))))
     browser.choose('Only of what is selected', True)
     browser.choose('Frames', True)
-    page.selection.choose('robot')
+    selection(page).choose('robot')
     browser.wait_until(lambda: '/models/robot/foot/Frames' in browser.nodes)
     assert '/models/other/link/Frames' not in browser.nodes
-    page.selection.choose('robot', 'arm')
+    selection(page).choose('robot', 'arm')
     browser.wait_until(lambda: '/models/robot/foot/Frames' not in browser.nodes)
     assert '/models/robot/arm/Frames' in browser.nodes
 
@@ -175,7 +175,7 @@ def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
 
 def test_cameras_follow_the_selected_model_and_keep_their_offset(browser, simulator, page):
     simulator.change(SceneChange(True, (model('a', 1),)))
-    page.selection.choose('a')
+    selection(page).choose('a')
     browser.click('Follow the selection')
     browser.wait_until(lambda: browser.control('Stop following'))
     browser.send(CAMERA | {'position': [3.0, 0.0, 2.0], 'look_at': [1.0, 0.0, 1.0]})

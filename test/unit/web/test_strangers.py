@@ -511,10 +511,9 @@ def test_parts_of_a_file_of_another_browser_are_ignored(browser, site, served):
     with Browser(site.address) as other:
         other.wait_until(lambda: other.control(UPLOAD))
         part(other, 'mine', 1, b'!')
-        other.choose('Find', 'is read')  # after the part
-        other.wait_until(lambda: True)
-        browser.wait_until(lambda: browser.value('Find') == 'is read')
-        other.choose('Find', '')
+        other.choose('Steps', 5)  # after the part
+        browser.wait_until(lambda: browser.value('Steps') == 5)
+        other.choose('Steps', 1)
     part(browser, 'mine', 1, b'b')
     browser.wait_until(lambda: any(what == 'insert' for what, *_ in served[1].told))
     (text,) = (one[1] for one in served[1].told if one[0] == 'insert')
@@ -579,7 +578,7 @@ class Reconnected(Browser):
     def __init__(self, site, page):
         self.held = []
         super().__init__(site.address)
-        self.controls = page.controls
+        self.controls, self.keys = page.controls, page.keys
 
     def send(self, message):
         self.held.append(message)
@@ -592,7 +591,7 @@ class Reconnected(Browser):
 def test_what_is_done_in_the_first_moment_of_a_connection_is_not_lost(browser, site, served):
     released = threading.Event()
     with Reconnected(site, browser) as early:
-        early.upload(UPLOAD, 'early', b'x')
+        early.press('space')
         early.send(
             {
                 'type': 'GuiUpdateMessage',
@@ -604,7 +603,17 @@ def test_what_is_done_in_the_first_moment_of_a_connection_is_not_lost(browser, s
         site._websock_server._background_event_loop.call_soon_threadsafe(released.wait)
         early.let()
         released.set()
-        early.wait_until(lambda: {'insert', 'set_speed'} <= {what for what, *_ in served[1].told})
+        early.wait_until(lambda: {'pause', 'set_speed'} <= {what for what, *_ in served[1].told})
+
+
+def test_a_file_by_the_button_of_another_browser_ends_the_connection(browser, site, served):
+    with Reconnected(site, browser) as other:
+        other.upload(UPLOAD, 'foreign', b'x')
+        with pytest.raises(ConnectionClosed) as closed:
+            other.let()
+            other.wait_until(lambda: False)
+    assert closed.value.rcvd.reason == 'This is no button for files.'
+    assert not [one for one in served[1].told if one[0] == 'insert']
 
 
 def test_a_file_before_the_page_says_where_it_looks_ends_the_connection(browser, site):

@@ -98,6 +98,41 @@ def test_a_recording_plays_the_scene_without_a_server(browser, simulator):
     assert places[-2:] == [(0.25, 0.25), (1.5, 1.5)]
 
 
+def test_a_recording_has_boxes_and_overlays_of_its_browser_and_of_no_other(
+    browser, simulator, page, site
+):
+    simulator.change(SceneChange(True, (model('a', 1), model('b', 2))))
+    with Browser(site.address) as other:
+        for one, name in ((browser, 'a'), (other, 'b')):
+            one.choose('Only of what is selected', True)
+            one.choose('Frames', True)
+            one.click(name)
+            one.wait_until(lambda one=one, name=name: f'/models/{name}/link/Frames' in one.nodes)
+        browser.click('Record a recording')
+        browser.wait_until(lambda: browser.control('Stop the recording'))
+        other.choose('Joint axes', True)
+        other.choose('Frames', False)
+        other.wait_until(lambda: '/models/b/link/Frames' not in other.nodes)
+        browser.press('V')  # whose camera moves now is not that of the recording
+        simulator.motion(clock(real_time=1.0, _1=Pose((3.0, 0.0, 0.0))))
+        browser.wait_until(lambda: browser.nodes['/models/a/link'][1] == [3.0, 0.0, 0.0])
+        browser.click('Stop the recording')
+        recorded = scene_of(download(browser, 'recording.html').decode())
+    messages = [message for _, message in recorded['messages']]
+    shown = {message['name'] for message in messages if 'props' in message and 'name' in message}
+    assert {'/models/a/link/Frames', '/models/a/link/selected'} <= shown
+    assert not [name for name in shown if name.startswith('/models/b/link/') and '0 v' not in name]
+    assert '/gizmo' not in shown
+    assert not [
+        message
+        for message in messages
+        if message['type'] == 'SetCameraPositionMessage' and not message['initial']
+    ]
+    wait_until(lambda: len(site.get_clients()) == 1)
+    (client,) = site.get_clients().values()
+    assert client._websock_connection._record_handles == []
+
+
 def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page, monkeypatch):
     monkeypatch.setattr(takes, 'LONGEST', 2.0)
     browser.wait_until(lambda: browser.control('Record a recording'))

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from support.hostile_texts import TEXTS
 
@@ -51,6 +51,7 @@ def test_properties_of_marked_up_text(text):
 
 
 @given(ANY)
+@example('a\u00a0b')  # a space that breaks no line
 def test_properties_of_plain_text(text):
     shown = plain(text)
     assert len(shown) <= MOST
@@ -92,9 +93,11 @@ def test_html_is_made_in_one_place_and_markdown_nowhere():
         for path in FOLDER.glob('*.py')
         if re.search(r'add_html\(|\.content = ', path.read_text(encoding='utf-8'))
     }
+    # texts by `markup` and `table`
     assert made == {
         'text.py',
-        'inspector.py',  # what descriptions.py made
+        'faults.py',
+        'inspector.py',  # both: what descriptions.py made
         'bar.py',
         'camera_keys.py',
         'drive.py',
@@ -102,12 +105,13 @@ def test_html_is_made_in_one_place_and_markdown_nowhere():
         'clock.py',
         'keys.py',
         'world_name.py',
-    }  # texts by `markup` and `table`
+    }
     everything = '\n'.join(path.read_text(encoding='utf-8') for path in FOLDER.glob('*.py'))
+    # a constant
     assert not re.search(
         r'add_markdown|add_modal|add_label|run_javascript|add_plotly|'
         r'html\.escape|import escape',
         everything.replace('return html.escape(plain(text, most))', '').replace(
             'client.gui.add_modal(TITLE)', ''
         ),
-    )  # a constant
+    )

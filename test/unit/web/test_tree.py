@@ -1,7 +1,7 @@
 """The tree of models: a button for each, of the selected one also for its links."""
 
 import pytest
-from support.window import model
+from support.window import model, selection
 
 from rosbots_description.sim.description import SceneChange, ShownModel
 from rosbots_description.web import tree
@@ -30,7 +30,7 @@ def test_models_come_and_go_and_a_click_selects(browser, simulator, page):
     browser.click('a')
     browser.wait_until(lambda: rows(browser) == ['a', '└ base', '└ wheel', 'b'])
     browser.click('└ wheel')
-    browser.wait_until(lambda: (page.selection.model, page.selection.link) == ('a', 'wheel'))
+    browser.wait_until(lambda: (selection(page).model, selection(page).link) == ('a', 'wheel'))
     browser.wait_until(lambda: browser.controls[browser.control('└ wheel')][1]['color'] == 'orange')
     before = len(browser.controls)
     simulator.change(SceneChange(removed=('a',)))
@@ -38,7 +38,7 @@ def test_models_come_and_go_and_a_click_selects(browser, simulator, page):
     simulator.change(SceneChange(models=(model('c', 5),)))
     browser.wait_until(lambda: rows(browser) == ['b', 'c'])
     browser.click('c')
-    browser.wait_until(lambda: page.selection.model == 'c')
+    browser.wait_until(lambda: selection(page).model == 'c')
     # No button is ever removed, so the page has none to miss.
     assert not [m for m in browser.messages if m['type'] == 'GuiRemoveMessage']
     browser.wait_until(lambda: rows(browser) == ['c', '└ link', 'b'])
@@ -52,7 +52,7 @@ def test_a_large_world_is_searched(browser, simulator, page, monkeypatch):
     assert any('and 95 more' in text for text in browser.texts())
     browser.choose('Find', 'BOX_77')
     browser.wait_until(lambda: rows(browser) == ['box_77'])
-    page.selection.choose('box_3')
+    selection(page).choose('box_3')
     browser.wait_until(lambda: rows(browser) == ['box_3', 'box_77'])
     assert not any('more' in text for text in browser.texts())
 
@@ -60,7 +60,7 @@ def test_a_large_world_is_searched(browser, simulator, page, monkeypatch):
 @pytest.mark.parametrize('part', ['wheel', 'WHEEL'])
 def test_links_of_the_selected_model_are_found(browser, simulator, page, part):
     simulator.change(SceneChange(True, (robot('a', 'base', 'wheel_left'), model('b', 9))))
-    page.selection.choose('a')
+    selection(page).choose('a')
     browser.wait_until(lambda: browser.control('└ base'))
     browser.choose('Find', part)
     browser.wait_until(lambda: rows(browser) == ['a', '└ wheel_left'])

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 from support.browser import CAMERA, Browser
 from support.patience import wait_until
-from support.window import FakeSimulator, clock, model
+from support.window import FakeSimulator, clock, model, selection
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
 
 from rosbots_description.sim.core import Pose
@@ -16,7 +16,9 @@ from rosbots_description.web import Page, Site, WindowError
 from rosbots_description.web.client_messages import KINDS
 from rosbots_description.web.gate import LOOKS, OF_VIEWERS
 from rosbots_description.web.gizmo import NODE
+from rosbots_description.web.markers import MARKERS
 
+BOX = '/models/box/link'
 UPLOAD = 'Upload URDF, xacro or SDF'
 SECRET, VIEWING = 'the-token-of-this-test', 'the-token-for-viewing'
 
@@ -39,22 +41,26 @@ def site(served):
 
 @pytest.fixture
 def viewer(served):
-    """A browser that may only look, at a page where a model is selected and all can be done."""
+    """A browser that may only look and has selected a model, beside one that controls."""
     site, simulator, page = served
-    with Browser(site.address) as owner, Browser(site.viewing_address) as browser:
-        owner.wait_until(lambda: simulator.change)
+    wait_until(lambda: not page.browsers, 'the end of those of other tests')
+    with Browser(site.address) as owner:
+        owner.wait_until(lambda: page.browsers)
         simulator.change(SceneChange(True, (model('box', 1), model('other', 2))))
         page.poll()
-        page.selection.choose('box')
-        browser.wait_until(
-            lambda: NODE in browser.nodes and browser.control(UPLOAD) and browser.control('Forward')
-        )
-        browser.wait_until(lambda: LOOKS in browser.notes())  # as it came in
-        browser.messages.clear()
-        simulator.told.clear()
-        simulator.joints.told.clear()
-        yield browser
-        page.selection.choose(None)
+        selection(page).choose('other')
+        owner.wait_until(lambda: NODE in owner.nodes)
+        with Browser(site.viewing_address) as browser:
+            browser.wait_until(lambda: browser.control(UPLOAD) and browser.control('Forward'))
+            browser.wait_until(lambda: LOOKS in browser.notes())  # as it came in
+            browser.wait_until(lambda: f'{BOX}/0 v' in browser.nodes)
+            browser.click_node(f'{BOX}/0 v')
+            browser.wait_until(lambda: f'{BOX}/selected' in browser.nodes)
+            browser.messages.clear()
+            simulator.told.clear()
+            simulator.joints.told.clear()
+            browser.owner = owner
+            yield browser
 
 
 # Everything that a page can send, but what is in OF_VIEWERS.
@@ -84,9 +90,8 @@ ACTS = {
     ],
     'GuiButtonHoldMessage': [lambda b: b.hold('Forward')],
     'CommandTriggerMessage': [
-        lambda b, key=key: b.press(key) for key in ('space', 'I', 'delete', 'escape', 'D')
+        lambda b, key=key: b.press(key) for key in ('space', 'I', 'delete', 'D')
     ],
-    'SceneNodeClickMessage': [lambda b: b.click_node('/models/other/link')],
     'SceneNodeDragMessage': [
         lambda b: b.send(
             {
@@ -127,7 +132,7 @@ def test_what_changes_anything_is_refused_with_one_notice(viewer, served, _kind,
     assert viewer.notes() == [LOOKS]
     assert [one for one in simulator.told if one[0] != 'state'] == []
     assert simulator.joints.told == []
-    assert (page.selection.model, page.selection.link) == ('box', None)
+    assert [one.selection.model for one in page.browsers.values()] == ['other', 'box']
 
 
 def test_a_value_that_was_changed_is_shown_as_it_is_again(viewer):
@@ -141,10 +146,66 @@ def test_a_value_that_was_changed_is_shown_as_it_is_again(viewer):
     )
 
 
-def test_a_handle_that_was_dragged_is_shown_where_it_is_again(viewer):
-    viewer.nodes[NODE][1] = [9.0, 0.0, 0.0]
-    viewer.drag(NODE, [9.0, 0.0, 0.0])
-    viewer.wait_until(lambda: viewer.nodes[NODE][1] == [0.0, 0.0, 0.0])
+# What acts on a viewer's own browser only.
+ALLOWED = {
+    'Home',
+    'Top',
+    'Front',
+    'Fit all',
+    'Go to selection',
+    'Follow the selection',
+    'W A S D and arrows drive',
+    'Find',
+    'box',
+    '\u2514 link',
+    'other',
+    'Only of what is selected',
+    *MARKERS,
+    'Picture',
+}
+ALLOWED_KEYS = {'escape', '?', 'H', 'T', 'F', 'X', 'G', 'V'}
+
+
+def test_only_controls_of_the_own_view_and_selection_are_allowed(viewer, site):
+    allowed = site._gate._for_viewers
+    labels = {
+        props['label']
+        for number, (_, props) in viewer.controls.items()
+        if number in allowed and props['visible']
+    }
+    assert labels == ALLOWED
+    assert {key for key, number in viewer.keys.items() if number in allowed} == ALLOWED_KEYS
+
+
+def test_a_viewer_selects_for_itself(viewer, served):
+    _, simulator, page = served
+    viewer.click('other')
+    viewer.wait_until(lambda: '/models/other/link/selected' in viewer.nodes)
+    viewer.wait_until(lambda: '<b>other</b>' in viewer.tables())
+    viewer.choose('Frames', True)
+    viewer.wait_until(lambda: f'{BOX}/Frames' in viewer.nodes)
+    viewer.press('escape')
+    viewer.wait_until(lambda: '/models/other/link/selected' not in viewer.nodes)
+    assert NODE not in viewer.nodes  # which would move the model
+    owner = viewer.owner
+    owner.read(0.1)
+    assert NODE in owner.nodes
+    assert f'{BOX}/Frames' not in owner.nodes
+    assert f'{BOX}/selected' not in owner.nodes
+    assert selection(page).model == 'other'
+    assert [one for one in simulator.told if one[0] != 'state'] == []
+    assert viewer.notes() == []
+
+
+def test_what_a_viewer_may_use_is_forgotten_when_it_leaves(viewer, site):
+    wait_until(lambda: len(site.get_clients()) == 2)
+    before = set(site._gate._for_viewers)
+    with Browser(site.viewing_address) as another:
+        another.wait_until(lambda: another.control('Find'))
+        assert len(site._gate._for_viewers) > len(before)
+        assert len(site._gate._receivers) == 3
+    wait_until(lambda: site._gate._for_viewers == before)
+    assert len(site._gate._receivers) == 2
 
 
 def test_the_own_camera_moves_by_hand_and_by_the_buttons_of_the_view(viewer, site):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.browser import CAMERA, Browser
-from support.window import clock, model
+from support.window import clock, model, selection
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import Plane, SceneChange
@@ -85,7 +85,7 @@ def test_a_view_from_the_front_is_ahead(looking, page):
 
 
 def test_what_is_selected_is_gone_to_from_where_one_is(looking, page):
-    page.selection.choose('b')
+    selection(page).choose('b')
     looking.send(CAMERA | {'position': [0.0, -20.0, 2.0], 'look_at': [0.0, 0.0, 2.0]})
     looking.wait_until(
         lambda: (
@@ -125,10 +125,10 @@ def test_nothing_to_go_to_is_no_fault(looking, page):
 def test_a_double_click_goes_to_the_model_and_keeps_it_selected(looking, page, monkeypatch):
     monkeypatch.setattr(views, 'DOUBLE', math.inf)
     looking.click_node('/models/b/link/0 v')
-    looking.wait_until(lambda: page.selection.model == 'b')
+    looking.wait_until(lambda: selection(page).model == 'b')
     _, target = turned(looking, page, lambda: looking.click_node('/models/b/link/0 v'))
     assert target[:2] == pytest.approx([10.0, 0.0], abs=0.05)
-    assert (page.selection.model, page.selection.link) == ('b', None)
+    assert (selection(page).model, selection(page).link) == ('b', None)
 
 
 def test_a_camera_below_the_ground_is_lifted_above_it(looking, page):
