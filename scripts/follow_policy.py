@@ -54,7 +54,6 @@ def main():
     commands = rospy.Publisher('cmd_vel', Twist, queue_size=1)
     rospy.on_shutdown(lambda: commands.publish(Twist()))
     rospy.on_shutdown(lambda: rospy.rostime.wallsleep(0.5))  # or it may get lost with the topic
-
     newest = Odometry()
 
     def answer(scan):
@@ -85,4 +84,6 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    from rosbots_description.ros_api.clients.node_program import run_node
+
+    run_node(main)

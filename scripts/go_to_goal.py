@@ -14,12 +14,13 @@ Parameters:
     ~speed, ~turn: limits of the command [m/s], [rad/s].
 """
 
-import contextlib
 import math
 
 import rospy
 from gazebo_msgs.srv import GetModelState
 from geometry_msgs.msg import Twist
+
+from rosbots_description.ros_api.clients.node_program import run_node
 
 RATE = 20.0  # [Hz], simulated time
 SLOW_DOWN = 0.8  # speed per distance to the goal [1/s]
@@ -74,5 +75,4 @@ def main():
 
 
 if __name__ == '__main__':
-    with contextlib.suppress(rospy.ROSInterruptException):  # stopped while it waited
-        main()
+    run_node(main)

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Learn to drive to a goal by PPO of stable-baselines3: learn_by_cma.py with gradients.
+"""Learn a task by PPO of stable-baselines3: learn_by_cma.py with gradients, for all tasks.
 
 Needs stable-baselines3, and with it PyTorch, which this project does not install.
 """
 
 import argparse
 import logging
+from functools import partial
 
 import gymnasium
 import numpy as np
@@ -15,38 +16,57 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.vec_env import SubprocVecEnv
 
-TESTS, TEST_SEED = 100, 1_000_000  # episodes of the test; the seeds of learning are below
+TEST_SEED = 1_000_000  # of the first episode of the test; the seeds of learning are below
+
+
+def yellow(picture):
+    """Return which share of each sector is yellow in the lower half of a picture."""
+    red, green, blue = picture[len(picture) // 2 :].astype(int).transpose(2, 0, 1)
+    is_yellow = (red > blue + 60) & (green > blue + 60)
+    return [part.mean() for part in np.array_split(is_yellow, SECTORS, axis=1)]
+
+
+# What a policy sees, from -1 to 1; control steps of an episode (None: all of the task's), and
+# episodes of the test.
+TASKS = {
+    'GoToGoal': (lambda seen: inputs(seen['laser'], *seen['goal']), 150, 100),
+    'FollowLine': (lambda seen: yellow(seen['camera1']), None, 20),
+    'Wander': (lambda seen: inputs(seen['laser'], 0.0, 0.0, 0.0)[:SECTORS], None, 20),
+    'Maze': (lambda seen: inputs(seen['laser'], 0.0, 0.0, 0.0)[:SECTORS], None, 20),
+}
 
 
 class Inputs(gymnasium.ObservationWrapper):
-    """Observes what follow_policy.py gives its policies."""
+    """Observes the few numbers that a policy sees."""
 
-    def __init__(self, environment):
+    def __init__(self, environment, seen_by_policy):
         super().__init__(environment)
-        self.observation_space = gymnasium.spaces.Box(-1.0, 1.0, (SECTORS + 3,), np.float32)
+        self._seen_by_policy = seen_by_policy
+        size = SECTORS + 3 * ('goal' in environment.observation_space.spaces)
+        self.observation_space = gymnasium.spaces.Box(-1.0, 1.0, (size,), np.float32)
 
     def observation(self, seen):
         """Return the inputs of a policy."""
-        return inputs(seen['laser'], *seen['goal']).astype(np.float32)
+        return np.array(self._seen_by_policy(seen), np.float32)
 
 
-def environment():
-    """Return a world with episodes of at most 15 s."""
+def environment(task):
+    """Return a world with a task."""
     logging.getLogger('rosbots_description').setLevel(logging.ERROR)  # the same for each world
-    return Inputs(
-        gymnasium.make('rosbots_description.gym:rosbots/GoToGoal-v0', max_episode_steps=150)
-    )
+    seen_by_policy, steps, _ = TASKS[task]
+    name = f'rosbots_description.gym:rosbots/{task}-v0'
+    return Inputs(gymnasium.make(name, max_episode_steps=steps), seen_by_policy)
 
 
-def reaches(model, world, seed):
-    """Tell whether the policy reaches the goal of an episode."""
+def episode(model, world, seed):
+    """Return the sum of the rewards of an episode, and whether the goal was reached, if any."""
     seen, info = world.reset(seed=seed)
-    ended = False
+    total, ended = 0.0, False
     while not ended:
         action, _ = model.predict(seen, deterministic=True)
-        seen, _, terminated, truncated, info = world.step(action)
-        ended = terminated or truncated
-    return info['is_success']
+        seen, reward, terminated, truncated, info = world.step(action)
+        total, ended = total + reward, terminated or truncated
+    return total, info.get('is_success')
 
 
 class Progress(BaseCallback):
@@ -56,30 +76,22 @@ class Progress(BaseCallback):
         return True
 
     def _on_rollout_end(self):
-        episodes = self.model.ep_info_buffer
-        print(
-            f'{self.num_timesteps} steps: return {np.mean([one["r"] for one in episodes]):5.2f}, '
-            f'{np.mean([one["is_success"] for one in episodes]):4.0%} reach the goal',
-            flush=True,
-        )
+        returns = [one['r'] for one in self.model.ep_info_buffer]
+        print(f'{self.num_timesteps} steps: return {np.mean(returns):5.2f}', flush=True)
 
 
 def main():
-    """Learn, test on starts and goals that were not learned from, and save the policy."""
+    """Learn, save the policy, and test it in episodes that it has not learned from."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('policy', help='file to write, for PPO.load')
+    parser.add_argument('--task', choices=TASKS, default='GoToGoal')
     parser.add_argument('--steps', type=int, default=16_384, help='of control, to learn from')
     parser.add_argument('--worlds', type=int, default=2, help='in parallel, each a process')
     parser.add_argument('--seed', type=int, default=1)
     options = parser.parse_args()
     # The same steps, worlds and seed give the same policy on any machine with these packages.
-    worlds = make_vec_env(
-        environment,
-        options.worlds,
-        seed=options.seed,
-        vec_env_cls=SubprocVecEnv,
-        monitor_kwargs={'info_keywords': ('is_success',)},
-    )
+    make = partial(environment, options.task)
+    worlds = make_vec_env(make, options.worlds, seed=options.seed, vec_env_cls=SubprocVecEnv)
     model = PPO(
         'MlpPolicy',
         worlds,
@@ -91,9 +103,13 @@ def main():
     model.learn(options.steps, Progress())
     model.save(options.policy)
     worlds.close()
-    world = environment()
-    reached = sum(reaches(model, world, TEST_SEED + number) for number in range(TESTS))
-    print(f'test: {reached} of {TESTS} episodes reach the goal')
+    world, tests = make(), TASKS[options.task][2]
+    results = [episode(model, world, TEST_SEED + number) for number in range(tests)]
+    totals, reached = zip(*results, strict=True)
+    successes = '' if None in reached else f', {np.mean(reached):.0%} reach the goal'
+    print(
+        f'test: return {np.mean(totals):.2f} ± {np.std(totals):.2f} in {tests} episodes{successes}'
+    )
 
 
 if __name__ == '__main__':

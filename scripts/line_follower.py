@@ -17,6 +17,8 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image
 
+from rosbots_description.ros_api.clients.node_program import run_node
+
 FEWEST = 20  # yellow pixels that are a line
 SEARCH = 0.4  # rate of turn while there is no line [rad/s]
 
@@ -76,4 +78,4 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    run_node(main)

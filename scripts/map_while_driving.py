@@ -19,6 +19,8 @@ import tf2_ros
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import LaserScan
 
+from rosbots_description.ros_api.clients.node_program import run_node
+
 CROSSED, HIT = -0.4, 0.9  # added to the log-odds of a cell that a ray crosses or ends in
 LIMIT = 5.0  # of the log-odds, so that a few scans can change a cell again
 
@@ -82,4 +84,4 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    run_node(main)

@@ -24,6 +24,8 @@ from control_msgs.msg import (
 from gazebo_msgs.srv import GetModelState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
+from rosbots_description.ros_api.clients.node_program import run_node
+
 JOINTS = [f'joint{number}' for number in range(1, 8)]
 SHOULDER, UPPER, FORE, HAND = 0.3, 0.4, 0.36, 0.18  # height; lengths, of the hand to the grip [m]
 ABOVE = 0.13  # from which the hand comes down [m]
@@ -90,4 +92,4 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    run_node(main)

@@ -2,8 +2,7 @@
 """The task rosbots/GoToGoal-v0 over ROS: pause, step and reset the simulator by its services.
 
 For learning with ROS in the loop: a node under test, or a navigation stack between the agent and
-the robot. Without, rosbots/GoToGoal-v0 itself is faster and exact: here commands and readings
-travel on connections of their own, so the same actions do not give the same numbers twice.
+the robot. Without, rosbots/GoToGoal-v0 is faster. /gazebo/step comes after what was sent before it.
 
 Publishes:
     cmd_vel (geometry_msgs/Twist): the action.
@@ -17,14 +16,14 @@ Parameters:
     ~policy: path of a policy for follow_policy.py, which drives as an example.
     ~episodes: how many.
     ~exact: advance by /gazebo/step; false: run for a control period between unpause and pause.
-    ~bumper: end an episode when the robot touches something. The sensor looks for contacts in each
-        physics step, which takes three times as long.
+    ~bumper: end an episode when the robot touches something; steps take three times as long.
 """
 
 import json
 import math
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import gymnasium
@@ -39,6 +38,8 @@ from nav_msgs.msg import Odometry
 from rosbots_msgs.srv import Step
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
+
+from rosbots_description.ros_api.clients.node_program import run_node
 
 PERIOD, STEPS = 0.1, 100  # of control [s], simulated; in steps of 1 ms
 REACHED, BUMPED = 0.4, -1.0  # distance to the goal [m]; reward for touching something
@@ -80,7 +81,8 @@ class RosGoToGoal(gymnasium.Env):
         self._place = service('set_model_state', SetModelState)
         self._state = service('get_model_state', GetModelState)
         self._newest, self._arrived = {}, threading.Condition()
-        self._commands = rospy.Publisher('cmd_vel', Twist, queue_size=1, tcp_nodelay=True)
+        with warnings.catch_warnings(action='ignore'):  # that publishing waits: it is meant to
+            self._commands = rospy.Publisher('cmd_vel', Twist, queue_size=None, tcp_nodelay=True)
         self._periods = {
             topic: period
             for topic, (kind, period) in TOPICS.items()
@@ -234,4 +236,4 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    run_node(main)

@@ -20,6 +20,8 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
+from rosbots_description.ros_api.clients.node_program import run_node
+
 ROOM = 1.0  # free way after which a turning robot drives again [m]
 
 
@@ -78,4 +80,4 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    run_node(main)

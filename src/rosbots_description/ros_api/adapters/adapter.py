@@ -80,7 +80,7 @@ class Adapter:
             logger.error(
                 '%s: not opened, since ROS has no such names: %s; use a-z, A-Z, 0-9 and _, '
                 "separated by slashes, in the tags that they are made of, and in the model's name",
-                where(self.plugin),
+                owner_name(self.plugin),
                 ', '.join(map(repr, sorted(invalid))),
             )
         return [one for one in endpoints if one.name not in invalid]
@@ -159,7 +159,7 @@ class Adapter:
         if there != message_class._type:
             logger.error(
                 '%s: the topic %s is not opened as %s: this node uses it as %s; rename it',
-                where(self.plugin),
+                owner_name(self.plugin),
                 topic,
                 message_class._type,
                 there,
@@ -167,6 +167,6 @@ class Adapter:
         return bool(there == message_class._type)
 
 
-def where(plugin: HasTopics) -> str:
+def owner_name(plugin: HasTopics) -> str:
     """Return the name of a plugin or controller for messages."""
     return f"model '{plugin.model.name}', plugin '{plugin.spec.name}'"

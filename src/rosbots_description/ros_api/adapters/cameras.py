@@ -45,7 +45,7 @@ from ...sim.sensors import (
 from ..messages import stamp
 from .adapter import Adapter
 from .declarations import Offers, Publishes, Subscribes
-from .registry import connects
+from .registry import declare_topics
 
 QUEUE = MAX_BURST + 1  # a burst, and the picture before; Gazebo's is 2
 _FIELDS = [
@@ -212,9 +212,9 @@ _TRIGGERS = tuple(
     Subscribes(f'<{side}triggerTopicName>', Empty, 'trigger', lambda _message: ())
     for side in ('', *(f'{side} ' for side in _SIDES))
 )
-connects(CameraPlugin, *_ONE)
-connects(MultiCameraPlugin, *_BOTH)
-connects(TriggeredCameraPlugin, *_ONE, *_TRIGGERS[:1])
-connects(TriggeredMultiCameraPlugin, *_BOTH, *_TRIGGERS[1:])
-connects(DepthCameraPlugin, *_DEPTH)
-connects(OpenniKinectPlugin, *_DEPTH)
+declare_topics(CameraPlugin, *_ONE)
+declare_topics(MultiCameraPlugin, *_BOTH)
+declare_topics(TriggeredCameraPlugin, *_ONE, *_TRIGGERS[:1])
+declare_topics(TriggeredMultiCameraPlugin, *_BOTH, *_TRIGGERS[1:])
+declare_topics(DepthCameraPlugin, *_DEPTH)
+declare_topics(OpenniKinectPlugin, *_DEPTH)

@@ -15,7 +15,7 @@ from geometry_msgs.msg import Vector3, Wrench
 from ...sim.core import NANOSECONDS, Vector, add
 from ...sim.sensors import BumperPlugin, ContactPair
 from .declarations import Publishes
-from .registry import connects
+from .registry import declare_topics
 
 
 def contacts_message(touches: Sequence[ContactPair]) -> ContactsState:
@@ -50,7 +50,7 @@ def _wrench(force: Vector, torque: Vector) -> Wrench:
     return Wrench(Vector3(*force), Vector3(*torque))
 
 
-connects(
+declare_topics(
     BumperPlugin,
     Publishes(
         'contacts',

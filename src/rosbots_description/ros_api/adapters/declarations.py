@@ -16,14 +16,14 @@ from genpy import Message
 
 from ..messages import stamp
 from ..transport import has_subscribers, next_number, publish_serialized, topic_name
-from .adapter import Adapter, where
+from .adapter import Adapter, owner_name
 
 logger = logging.getLogger(__name__)
 
 COMPLAINT_PERIOD = 5.0  # minimum time between two errors about invalid commands [s, wall]
 
 # Number of the header, time [ns] and reading -> the message as it goes over the wire.
-Pack = Callable[[int, int, Any], bytes]
+Serializer = Callable[[int, int, Any], bytes]
 
 
 class Declaration(Protocol):
@@ -70,7 +70,9 @@ class Publishes:
     frame: str | None = None  # if given, fill in the header; a name that may contain <tag>
     queue: int = 1
     latch: bool = False
-    pack: Callable[[Adapter], Pack] | None = None  # replaces `convert` where speed matters
+    serializer: Callable[[Adapter], Serializer] | None = (
+        None  # replaces `convert` where speed matters
+    )
     always: bool = False  # advertise even if the description does not request the output
     log: str = ''  # debug message after advertising
 
@@ -82,7 +84,7 @@ class Publishes:
 class PublishedTopic(Endpoint):
     """A topic that publishes the readings of an output, if the plugin has it."""
 
-    _pack: Pack | None = None
+    _serialize: Serializer | None = None
 
     def __init__(self, adapter: Adapter, declared: Publishes) -> None:
         super().__init__(adapter, declared.topic)
@@ -98,8 +100,8 @@ class PublishedTopic(Endpoint):
             return
         if declared.frame is not None:
             self._frame = adapter.frame(adapter.text(declared.frame))
-        if declared.pack is not None:
-            self._pack = declared.pack(adapter)
+        if declared.serializer is not None:
+            self._serialize = declared.serializer(adapter)
         self._clock = adapter.server.world.clock
         self.publisher = adapter.advertise(
             self.name, declared.message, declared.queue, declared.latch
@@ -137,8 +139,8 @@ class PublishedTopic(Endpoint):
         """Publish a reading."""
         publisher: rospy.Publisher = self.publisher
         now_ns = self._clock.now_ns
-        if self._pack is not None:
-            publish_serialized(publisher, self._pack(next_number(publisher), now_ns, reading))
+        if self._serialize is not None:
+            publish_serialized(publisher, self._serialize(next_number(publisher), now_ns, reading))
             return
         message = self.declared.convert(reading)
         if self.declared.frame is not None:
@@ -248,7 +250,7 @@ class Offered(Endpoint):
             logger.warning(
                 '%s: the services of %s are those of another plugin; names of its own, or a '
                 'robot_namespace, would give this one its own',
-                where(self.adapter.plugin),
+                owner_name(self.adapter.plugin),
                 self.name,
             )
         else:

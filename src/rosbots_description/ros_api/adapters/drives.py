@@ -34,8 +34,13 @@ from ..server import STATIC_TOPIC
 from ..transport import set_level, subscriber_names, subscribers
 from .adapter import Adapter
 from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite
-from .packs import JointStatesPack, RootedTransformPack, TransformPack, odometry_pack
-from .registry import connects
+from .registry import declare_topics
+from .serializers import (
+    JointStatesSerializer,
+    RootedTransformSerializer,
+    TransformSerializer,
+    odometry_serializer,
+)
 
 logger = logging.getLogger(__name__)
 
@@ -137,26 +142,31 @@ ODOMETRY = Publishes(
     'odometry',
     DiffDrive.topic_names['odometry'],
     OdometryMessage,
-    pack=odometry_pack,
+    serializer=odometry_serializer,
     log='Advertise odom on {} ',
 )
 TRANSFORM = Publishes(
-    'odometry_transform', '/tf', TFMessage, pack=RootedTransformPack, queue=100, always=True
+    'odometry_transform',
+    '/tf',
+    TFMessage,
+    serializer=RootedTransformSerializer,
+    queue=100,
+    always=True,
 )
 WHEELS = (
     WheelStates(
         'joint_states',
         DiffDrive.topic_names['joint_states'],
         JointState,
-        pack=JointStatesPack,
+        serializer=JointStatesSerializer,
         queue=1000,
         log='Advertise joint_states',
     ),
-    WheelFrames('wheel_transform', '/tf', TFMessage, pack=TransformPack, queue=100),
+    WheelFrames('wheel_transform', '/tf', TFMessage, serializer=TransformSerializer, queue=100),
 )
 
-connects(DiffDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
-connects(SkidSteerDrive, LogsStart(), TRANSFORM, COMMAND, ODOMETRY)
+declare_topics(DiffDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
+declare_topics(SkidSteerDrive, LogsStart(), TRANSFORM, COMMAND, ODOMETRY)
 for moved in (PlanarMove, ForceBasedMove, RidgebackForceBasedMove):
-    connects(moved, LogsStart(), TRANSFORM, SIDEWAYS, ODOMETRY)
-connects(TricycleDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
+    declare_topics(moved, LogsStart(), TRANSFORM, SIDEWAYS, ODOMETRY)
+declare_topics(TricycleDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)

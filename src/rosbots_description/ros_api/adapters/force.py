@@ -21,8 +21,8 @@ from ..messages import TransformLayout, read_transform
 from ..server import STATIC_TOPIC
 from ..transport import subscriber_names
 from .adapter import Adapter
-from .declarations import Endpoint, Pack, PublishedTopic, Publishes, Subscribes, finite
-from .registry import connects
+from .declarations import Endpoint, PublishedTopic, Publishes, Serializer, Subscribes, finite
+from .registry import declare_topics
 
 WORLD = 'world'
 _numbers = finite(*(f'{part}.{axis}' for part in ('force', 'torque') for axis in 'xyz'))
@@ -43,7 +43,7 @@ def _hand(adapter: Adapter) -> HandOfGod:
     return adapter.plugin
 
 
-def actual_pack(adapter: Adapter) -> Pack:
+def actual_serializer(adapter: Adapter) -> Serializer:
     """Return what lays out where the link is; its frames take no prefix."""
     layout = TransformLayout(WORLD, f'{_hand(adapter).frame}_actual')
     return lambda _number, now_ns, edge: layout.pack(now_ns, edge.pose)
@@ -126,5 +126,9 @@ def _from_root(name: str, edges: Mapping[str, tuple[str, Pose]]) -> tuple[str, P
     return name, pose
 
 
-connects(Force, Subscribes(Force.topic_names['command'], Wrench, 'command', read_wrench))
-connects(HandOfGod, Actual('actual', '/tf', TFMessage, pack=actual_pack, queue=100), FollowsFrame())
+declare_topics(Force, Subscribes(Force.topic_names['command'], Wrench, 'command', read_wrench))
+declare_topics(
+    HandOfGod,
+    Actual('actual', '/tf', TFMessage, serializer=actual_serializer, queue=100),
+    FollowsFrame(),
+)

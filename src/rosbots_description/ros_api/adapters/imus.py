@@ -22,11 +22,11 @@ from ...sim.core import Vector
 from ...sim.sensors import Fix, HectorGps, HectorImu, ImuSensorPlugin, LinkImu
 from ..messages import ImuLayout
 from .adapter import Adapter
-from .declarations import Offers, Pack, Publishes
-from .registry import connects
+from .declarations import Offers, Publishes, Serializer
+from .registry import declare_topics
 
 
-def imu_pack(adapter: Adapter) -> Pack:
+def imu_serializer(adapter: Adapter) -> Serializer:
     """Return what lays readings out."""
     return ImuLayout(adapter.text('<frameName>')).pack
 
@@ -61,17 +61,17 @@ def velocity_message(velocity: Vector) -> Vector3Stamped:
     return Vector3Stamped(vector=Vector3(*velocity))
 
 
-IMU = Publishes('imu', LinkImu.topic_names['imu'], Imu, pack=imu_pack)
+IMU = Publishes('imu', LinkImu.topic_names['imu'], Imu, serializer=imu_serializer)
 
-connects(ImuSensorPlugin, IMU)
-connects(LinkImu, IMU, Offers('<serviceName>', calibration))
-connects(
+declare_topics(ImuSensorPlugin, IMU)
+declare_topics(LinkImu, IMU, Offers('<serviceName>', calibration))
+declare_topics(
     HectorImu,
     IMU,
-    Publishes('bias', '<biasTopicName>', Imu, pack=imu_pack),
+    Publishes('bias', '<biasTopicName>', Imu, serializer=imu_serializer),
     Offers('<serviceName>', calibration),
 )
-connects(
+declare_topics(
     HectorGps,
     Publishes('fix', '<topicName>', NavSatFix, convert=fix_message, frame='<frameId>', queue=10),
     Publishes(

@@ -23,8 +23,8 @@ from ...sim.sensors import (
 )
 from ..messages import LaserScanLayout, PointCloudLayout
 from .adapter import Adapter
-from .declarations import Pack, Publishes
-from .registry import connects
+from .declarations import Publishes, Serializer
+from .registry import declare_topics
 
 _RING_FIELDS = [
     PointField(name, offset, PointField.UINT16 if name == 'ring' else PointField.FLOAT32, 1)
@@ -39,14 +39,14 @@ _RING_FIELDS = [
 ]
 
 
-def scan_pack(adapter: Adapter) -> Pack:
+def scan_serializer(adapter: Adapter) -> Serializer:
     """Return what lays scans out."""
     layout = LaserScanLayout(adapter.frame(adapter.text('<frameName>')))
 
-    def pack(number: int, now_ns: int, scan: Scan) -> bytes:
+    def serialize(number: int, now_ns: int, scan: Scan) -> bytes:
         return layout.pack(number, now_ns, scan[2:5], scan[5:], scan.ranges, scan.intensities)
 
-    return pack
+    return serialize
 
 
 def range_message(distance: Distance) -> Range:
@@ -61,7 +61,7 @@ def range_message(distance: Distance) -> Range:
     )
 
 
-def points_pack(adapter: Adapter) -> Pack:
+def points_serializer(adapter: Adapter) -> Serializer:
     """Return what lays point clouds out."""
     layout = PointCloudLayout(adapter.frame(adapter.text('<frameName>')))
     return lambda number, now_ns, points: layout.pack(number, now_ns, *points)
@@ -82,15 +82,20 @@ def ring_cloud_message(cloud: RingCloud) -> PointCloud2:
     )
 
 
-connects(LaserPlugin, Publishes('scan', LaserPlugin.topic_names['scan'], LaserScan, pack=scan_pack))
-connects(
+declare_topics(
+    LaserPlugin,
+    Publishes('scan', LaserPlugin.topic_names['scan'], LaserScan, serializer=scan_serializer),
+)
+declare_topics(
     RangePlugin,
     Publishes(
         'range', RangePlugin.topic_names['range'], Range, convert=range_message, frame='<frameName>'
     ),
 )
-connects(BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, pack=points_pack))
-connects(
+declare_topics(
+    BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, serializer=points_serializer)
+)
+declare_topics(
     VelodynePlugin,
     Publishes('cloud', '<topicName>', PointCloud2, convert=ring_cloud_message, frame='<frameName>'),
 )

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from ...sim.plugins import ModelPlugin
-from ...sim.runtime import Model
+from ...sim.runtime import Listener, Model
 from ..server import Server
 from .adapter import Adapter, HasTopics
 from .declarations import Declaration
@@ -18,7 +18,7 @@ SETTLING = 0.15
 _TOPICS: dict[type[Any], tuple[Declaration, ...]] = {}
 
 
-def connects(owner: type[Any], *declared: Declaration) -> None:
+def declare_topics(owner: type[Any], *declared: Declaration) -> None:
     """Give the plugins or controllers of a class these topics, which are opened in this order.
 
     A subclass has them, too, unless it is given its own.
@@ -93,7 +93,7 @@ class AdapterSet:
         self._server.loop.post(connect)
 
 
-class Adapters:
+class Adapters(Listener):
     """Opens and closes the topics of plugins as models come and go."""
 
     def __init__(self, server: Server) -> None:

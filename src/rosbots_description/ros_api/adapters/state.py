@@ -19,12 +19,12 @@ from trajectory_msgs.msg import JointTrajectory
 from ...sim.plugins import P3D, JointPoseTrajectory, JointStatePublisher
 from ..messages import OdometryLayout
 from .adapter import Adapter
-from .declarations import Pack, Publishes, Subscribes
-from .packs import JointStatesPack
-from .registry import connects
+from .declarations import Publishes, Serializer, Subscribes
+from .registry import declare_topics
+from .serializers import JointStatesSerializer
 
 
-def true_odometry_pack(adapter: Adapter) -> Pack:
+def true_odometry_serializer(adapter: Adapter) -> Serializer:
     """Return what lays the odometry of p3d out."""
     plugin = adapter.plugin
     assert isinstance(plugin, P3D)
@@ -49,23 +49,27 @@ def read_trajectory(message: JointTrajectory) -> tuple[Any, ...]:
     return header.frame_id, header.stamp.to_nsec(), message.joint_names, points
 
 
-connects(
+declare_topics(
     P3D,
     Publishes(
-        'odometry', P3D.topic_names['odometry'], Odometry, pack=true_odometry_pack, always=True
+        'odometry',
+        P3D.topic_names['odometry'],
+        Odometry,
+        serializer=true_odometry_serializer,
+        always=True,
     ),
 )
-connects(
+declare_topics(
     JointStatePublisher,
     Publishes(
         'joint_states',
         JointStatePublisher.topic_names['joint_states'],
         JointState,
-        pack=JointStatesPack,
+        serializer=JointStatesSerializer,
         queue=1000,
     ),
 )
-connects(
+declare_topics(
     JointPoseTrajectory,
     Subscribes('<topicName>', JointTrajectory, 'play', read_trajectory, queue=100),
 )

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from ...sim.plugins import WheelSlip
 from .adapter import Adapter
 from .declarations import Offers
-from .registry import connects
+from .registry import declare_topics
 
 
 def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
@@ -16,4 +16,4 @@ def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
     return SlipReconfigure(adapter.plugin, adapter.server.loop.post).close
 
 
-connects(WheelSlip, Offers('', reconfigure))
+declare_topics(WheelSlip, Offers('', reconfigure))

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 
 from ...sim.sensors import JointWrench, JointWrenchPlugin
 from .declarations import Publishes
-from .registry import connects
+from .registry import declare_topics
 
 
 def wrench_message(reading: JointWrench) -> WrenchStamped:
@@ -18,7 +18,7 @@ def wrench_message(reading: JointWrench) -> WrenchStamped:
     return WrenchStamped(wrench=Wrench(Vector3(*reading.force), Vector3(*reading.torque)))
 
 
-connects(
+declare_topics(
     JointWrenchPlugin,
     Publishes(
         'wrench',

@@ -6,6 +6,7 @@ __all__ = [
     'gz',
     'joint_follower',
     'joint_sliders',
+    'node_program',
     'planar_sample',
     'save_map',
     'save_world',

@@ -12,6 +12,7 @@ from gazebo_msgs.srv import (
     GetModelState,
     SpawnModel,
 )
+from genpy import Message
 from geometry_msgs.msg import Pose as PoseMessage
 from std_srvs.srv import Empty
 
@@ -66,11 +67,11 @@ def paused() -> Iterator[None]:
             unpause()
 
 
-def _service(name: str, service_type: Any) -> Callable[..., Any]:  # noqa: ANN401
+def _service(name: str, service_type: type[Any]) -> Callable[..., Message]:
     """Return what calls a service; it raises a `ScenarioError` if there is no answer."""
     path = f'/gazebo/{name}'
 
-    def call(*arguments: object) -> Any:  # noqa: ANN401  of each service's own type
+    def call(*arguments: object) -> Message:
         try:
             rospy.wait_for_service(path, DEADLINE)
             return rospy.ServiceProxy(path, service_type)(*arguments)
@@ -84,6 +85,6 @@ def _service(name: str, service_type: Any) -> Callable[..., Any]:  # noqa: ANN40
     return call
 
 
-def _require(answer: Any) -> None:  # noqa: ANN401
+def _require(answer: Message) -> None:
     if not answer.success:
         raise ScenarioError(answer.status_message)

@@ -55,6 +55,20 @@ def run(program: str, act: Callable[[Call], Lines], ros_arguments: Sequence[str]
     return DONE
 
 
+def require_master(node: str) -> None:
+    """Return if a ROS master answers the node, which need not be registered.
+
+    Raises:
+        CommandError: there is none.
+        SimError: its address is not valid, or something else answers there.
+    """
+    require_address()
+    if not is_master_running(f'/{node}'):
+        raise CommandError(
+            f'there is no ROS master at {rosgraph.get_master_uri()}, and so no simulator; {START}'
+        )
+
+
 def _has_reader(descriptor: int) -> bool:
     """Tell whether what is written there can be read: the other end of a pipe may be closed."""
     watch = select.poll()
@@ -63,17 +77,8 @@ def _has_reader(descriptor: int) -> bool:
 
 
 def _connect(node: str, ros_arguments: Sequence[str]) -> None:
-    """Become a node, at once or not at all.
-
-    Raises:
-        CommandError: there is no ROS master.
-        SimError: its address is not valid, or something else answers there.
-    """
-    require_address()
-    if not is_master_running(f'/{node}'):
-        raise CommandError(
-            f'there is no ROS master at {rosgraph.get_master_uri()}, and so no simulator; {START}'
-        )
+    """Become a node, at once or not at all; the errors are those of `require_master`."""
+    require_master(node)
     init_node(
         node,
         ros_arguments,

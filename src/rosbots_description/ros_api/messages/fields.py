@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import roslib.message
+from genpy import Message
 
 from ...sim.core import SimError
 
@@ -61,7 +62,7 @@ def number_getter(kind: type[Any], path: str) -> Callable[[Any], float]:
     if base not in NUMBERS:
         raise SimError(f"'{path}' is not a number but a {base}.")
 
-    def get(message: Any) -> float:  # noqa: ANN401  of that class
+    def get(message: Message) -> float:
         for name, index in steps:
             message = getattr(message, name)
             if index is not None:

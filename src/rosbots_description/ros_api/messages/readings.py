@@ -11,7 +11,7 @@ from ...sim.sensors import Distance, ImuReading, JointWrench, Scan
 from .conversions import read_pose, read_twist, read_vector
 
 
-def _scan(message: Any) -> Scan:  # noqa: ANN401  each of these takes its type of message
+def _scan(message: Message) -> Scan:
     return Scan(
         np.array(message.ranges, float),
         np.array(message.intensities, float),
@@ -23,7 +23,7 @@ def _scan(message: Any) -> Scan:  # noqa: ANN401  each of these takes its type o
     )
 
 
-def _imu(message: Any) -> ImuReading:  # noqa: ANN401
+def _imu(message: Message) -> ImuReading:
     q = message.orientation
     return ImuReading(
         (q.x, q.y, q.z, q.w),

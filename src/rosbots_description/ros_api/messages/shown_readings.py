@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from gazebo_msgs.msg import ContactsState
+from genpy import Message
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import (
@@ -84,7 +85,7 @@ def _contacts(message: ContactsState) -> ShownReading:
     return shown_contacts(points, normals, forces, message.header.frame_id)
 
 
-def _numbers(message: Any) -> ShownReading:  # noqa: ANN401  any message
+def _numbers(message: Message) -> ShownReading:
     return ShownReading(
         rows=tuple(
             (name, ' '.join(f'{value:.4g}' for value in values))
@@ -93,7 +94,7 @@ def _numbers(message: Any) -> ShownReading:  # noqa: ANN401  any message
     )
 
 
-def _leaves(message: Any, name: str) -> list[tuple[str, list[float]]]:  # noqa: ANN401
+def _leaves(message: Message, name: str) -> list[tuple[str, list[float]]]:
     """Return the numbers of a message, those of a vector together; no arrays, no header."""
     found, own = [], []
     for slot in message.__slots__:
@@ -125,8 +126,8 @@ SENSOR_TYPES = {kind._type: kind for kind in _SHOWN}
 MAP_TYPES = {kind._type: kind for kind in shown_maps.SHOWN}
 
 
-def shown_reading(message: Any) -> ShownReading:  # noqa: ANN401  of `SENSOR_TYPES` or `MAP_TYPES`
-    """Return what a window shows of a message.
+def shown_reading(message: Message) -> ShownReading:
+    """Return what a window shows of a message of one of `SENSOR_TYPES` or `MAP_TYPES`.
 
     Raises:
         SimError: a sentence about what is wrong with it, without its beginning.

@@ -7,13 +7,16 @@ import json
 from collections.abc import Iterable
 from dataclasses import fields
 from functools import cache
-from typing import Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, get_args, get_type_hints
 
 from std_msgs.msg import Float64MultiArray, String
 
 from ...sim import description
 from ...sim.core import Pose
 from ...sim.description import SceneChange, ShownContact, ShownMotion
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 _CLOCK, _LINK = 4, 8  # numbers of the clock, and of each link
 _CLASS = 'class'  # of an object in JSON
@@ -61,14 +64,14 @@ def read_contacts(message: Float64MultiArray) -> list[ShownContact]:
     return [ShownContact(*one) for one in zip(*[vectors] * 3, strict=True)]
 
 
-def _write(value: Any) -> dict[str, Any]:  # noqa: ANN401  of any class of the description
+def _write(value: 'DataclassInstance') -> dict[str, Any]:
     """Return the fields of a description, and its class."""
     return {_CLASS: type(value).__name__} | {
         field.name: getattr(value, field.name) for field in fields(value)
     }
 
 
-def _read(values: dict[str, Any]) -> Any:  # noqa: ANN401  of the class that it names
+def _read(values: dict[str, Any]) -> object:
     """Return what `_write` was given; a mapping names no class."""
     name = values.get(_CLASS)
     if not isinstance(name, str):
@@ -94,5 +97,6 @@ def _poses(kind: type) -> set[str]:
     }
 
 
-def _tuples(value: Any) -> Any:  # noqa: ANN401  as it is but for lists
+def _tuples(value: object) -> object:
+    """Return a value as it is, but lists as tuples."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

@@ -21,7 +21,7 @@ from types import FrameType
 
 import rospy
 
-from ...sim.core import held_records, replay
+from ...sim.core import Fault, reporting_to
 from ...sim.description import WorldSpec
 from ...sim.meshes import load_readers
 from ...sim.physics import CrashSandbox, EngineFactory, make_engine
@@ -33,6 +33,7 @@ from ..services import EXTENSIONS, SERVICES, advertise
 from ..topics import advertise_clock, advertise_performance, advertise_states, subscribe_states
 from ..transport import (
     BatchedPublishing,
+    FaultLog,
     Registrar,
     connect_logging,
     guard_handshakes,
@@ -99,7 +100,8 @@ def run(
 
     """
     _on_signals(signal.default_int_handler)
-    with held_records() as records:
+    faults: list[Fault] = []  # until there is a log
+    with reporting_to(faults.append):
         spec = read_world(options.world)
     try:
         # The sandbox forks this process before it has threads and connections.
@@ -121,7 +123,7 @@ def run(
             )
             loop = Loop(world, publishing.batched)
             server = Server(world, loop, Registrar(), find_package, find_model, sandbox, find_file)
-            _simulate(options, spec, records, server)
+            _simulate(options, spec, faults, server)
     except (KeyboardInterrupt, rospy.ROSInterruptException):
         return 0
     finally:
@@ -129,9 +131,7 @@ def run(
     return 0
 
 
-def _simulate(
-    options: Options, spec: WorldSpec, records: list[logging.LogRecord], server: Server
-) -> None:
+def _simulate(options: Options, spec: WorldSpec, faults: list[Fault], server: Server) -> None:
     world, loop = server.world, server.loop
     _on_signals(lambda _signal, _frame: loop.stop())
     rospy.on_shutdown(lambda: _end(loop))
@@ -141,7 +141,9 @@ def _simulate(
     sys.setswitchinterval(SWITCH_INTERVAL)
     for level, text in options.remarks:
         logger.log(level, '%s', text)
-    replay(records)
+    world.faults.on_fault = FaultLog()
+    for fault in faults:
+        world.faults.add(fault)
     world.paused, world.seed = options.paused, options.seed
     _connect(server, spec)
     watch_master(server.registrar, server.parameters)

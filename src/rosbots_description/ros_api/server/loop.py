@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 from contextvars import copy_context
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ...sim.core import SimError
+from ...sim.core import SimError, reporting_to
 from ...sim.runtime import NEVER
 from .command_queue import CommandQueue
 
@@ -99,8 +99,16 @@ class Loop:
 
         """
         future: Future[Result] = Future()
+
+        def reporting() -> Result:
+            with reporting_to(self._world.faults.add):
+                return work()
+
         threading.Thread(
-            target=copy_context().run, args=(_execute, future, work), name='beside', daemon=True
+            target=copy_context().run,
+            args=(_execute, future, reporting),
+            name='beside',
+            daemon=True,
         ).start()
         either: list[Future[Any]] = [future, self._ended]
         wait(either, return_when=FIRST_COMPLETED)
@@ -131,14 +139,15 @@ class Loop:
         self._owner = threading.get_ident()
         self._next_step = time.monotonic()
         self._left = steps
-        self._serve()
-        while not self._stopping and self._left != 0:
-            self._advance()
+        with reporting_to(self._world.faults.add):
             self._serve()
-            self._run_tasks()
-            self._wait()
-        self._stopping = True
-        self._serve()
+            while not self._stopping and self._left != 0:
+                self._advance()
+                self._serve()
+                self._run_tasks()
+                self._wait()
+            self._stopping = True
+            self._serve()
         self._ended.set_result(None)
 
     def _serve(self) -> None:

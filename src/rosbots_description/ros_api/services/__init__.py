@@ -8,7 +8,6 @@ from . import (  # noqa: F401
     lights,
     link_properties,
     links,
-    model_setters,
     models,
     physics,
     saving,

@@ -22,7 +22,7 @@ from ...sim.placement import box_around, free_name, placed
 from ...sim.resources import model_names, own_name
 from ..messages import RequestError, fill_pose, require_finite
 from ..server import Server
-from .model_setters import set_model_configuration
+from .models import set_model_configuration
 from .registry import EXTENSIONS, refuse, service
 from .spawning import PreparedModel, read_description, spawn_model
 

@@ -11,7 +11,7 @@ from rosbots_msgs.srv import (
     GetModelOmissionsResponse,
 )
 
-from ...sim.core import ModelError, NotFoundError, Pose, compose
+from ...sim.core import Fault, ModelError, NotFoundError, Pose, compose, report
 from ...sim.description import LightSpec, ModelSpec
 from ...sim.formats import load_sdf, load_sdf_light, load_urdf
 from ...sim.physics import CompiledModel
@@ -141,11 +141,9 @@ def warn_overlap(world: World, model: Model) -> None:
     """Warn if a model overlaps others, which will push it out."""
     deep = {name: depth for name, depth in world.overlaps(model).items() if depth > DEEP}
     if deep:
-        logger.warning(
-            "model '%s' was spawned inside %s, which will push it out; change its x, y or z",
-            model.name,
-            ' and '.join(f"'{name}' ({depth:.2g} m deep)" for name, depth in deep.items()),
-        )
+        others = ' and '.join(f"'{name}' ({depth:.2g} m deep)" for name, depth in deep.items())
+        what = f"model '{model.name}' was spawned inside {others}, which will push it out"
+        report(Fault(what, model=model.name, cure='change its x, y or z'))
 
 
 @service('get_model_omissions', GetModelOmissions, table=EXTENSIONS)

@@ -14,7 +14,7 @@ import rospy
 from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
 
 from ...sim.core import NANOSECONDS
-from ...sim.runtime import NEVER, SensorLife
+from ...sim.runtime import NEVER, SensorPart
 from ..messages import stamp
 from ..server import Server
 
@@ -50,10 +50,10 @@ class SensorRates:
     """Update rates of sensors, between two samples with new readings."""
 
     def __init__(self) -> None:
-        self._samples: dict[SensorLife, _Sample] = {}
+        self._samples: dict[SensorPart, _Sample] = {}
 
     def update(
-        self, world: str, sensors: Iterable[SensorLife], wall: float
+        self, world: str, sensors: Iterable[SensorPart], wall: float
     ) -> list[SensorPerformanceMetric]:
         """Return the rates of sensors.
 
@@ -76,7 +76,7 @@ class SensorRates:
         return found
 
 
-def _sample(sensor: SensorLife, before: _Sample, wall: float) -> _Sample:
+def _sample(sensor: SensorPart, before: _Sample, wall: float) -> _Sample:
     if sensor.due == NEVER:
         return _Sample(sensor.count)
     readings = sensor.count - before.readings

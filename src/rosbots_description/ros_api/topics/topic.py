@@ -3,7 +3,7 @@
 import rospy
 from genpy import Message
 
-from ...sim.runtime import NEVER, Model
+from ...sim.runtime import NEVER, Listener
 from ..server import Server
 
 QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
@@ -25,7 +25,7 @@ class _Subscribers(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has 
         self._server.loop.post(self._topic.schedule)
 
 
-class Topic:
+class Topic(Listener):
     """A topic published at simulation steps; it costs nothing without subscribers."""
 
     def __init__(self, server: Server, name: str, message_class: type[Message]) -> None:
@@ -39,14 +39,6 @@ class Topic:
         wanted = self._publisher.get_num_connections() > 0
         self.due = self._world.clock.steps + 1 if wanted else NEVER
 
-    # Callbacks of the world to its listeners.
-
     def world_reset(self) -> None:
         """Publish again at once, even if time jumped back."""
         self.schedule()
-
-    def model_spawned(self, model: Model) -> None:
-        """Nothing changes for a topic as such."""
-
-    def model_deleted(self, model: Model) -> None:
-        """Nothing changes for a topic as such."""

@@ -1,9 +1,10 @@
 """Connections, the master, logging and processes: all that touches rospy's internals."""
 
 from .client_node import is_running, own_parameters, start_node
+from .delivery import subscribed_connections, wait_for_delivery
 from .handshake import guard_handshakes
 from .incoming import caller_waits, guard_messages, wait_for_answers
-from .log_bridge import connect_logging, set_level
+from .log_bridge import FaultLog, connect_logging, set_level
 from .master import (
     NO_MASTER,
     AddressError,
@@ -43,6 +44,7 @@ __all__ = [
     'NO_MASTER',
     'AddressError',
     'BatchedPublishing',
+    'FaultLog',
     'Registrar',
     'SubscriberWatch',
     'caller_waits',
@@ -75,6 +77,7 @@ __all__ = [
     'set_level',
     'start_node',
     'stop_publishing',
+    'subscribed_connections',
     'subscribed_types',
     'subscriber_names',
     'subscribers',
@@ -82,6 +85,7 @@ __all__ = [
     'topics_of',
     'use_simulated_time',
     'wait_for_answers',
+    'wait_for_delivery',
     'watch_master',
     'write_parameters',
 ]

@@ -14,6 +14,8 @@ from rospy.impl import tcpros_base
 from rospy.impl.tcpros_base import TCPROSTransport, recv_buff
 from rospy.impl.tcpros_service import ServiceImpl
 
+from .delivery import await_data
+
 logger = logging.getLogger(__name__)
 
 # [bytes] rospy buffers a whole message in memory and accepts any length. The limit is far above any
@@ -45,6 +47,7 @@ def receive(connection: socket.socket, buffer: BytesIO, size: int) -> int:
     Raises:
         TransportTerminated: the connection is closed, or the message is too long.
     """
+    await_data(connection)
     count: int = recv_buff(connection, buffer, size)
     if buffer.tell() >= _LENGTH.size:
         with buffer.getbuffer() as content:

@@ -7,11 +7,10 @@ import rospy
 from rospy.impl.paramserver import get_param_server_cache
 from rospy.rostime import _set_rostime
 
-from ...sim.core import one_line
+from ...sim.core import Fault, log_fault, one_line
 
 _ROOT = __name__.partition('.')[0]  # the package, by the name it was imported as
-_PLUGINS = f'{_ROOT}.sim.plugins.'  # they log only while loading
-_REMEMBERED = 1000  # distinct messages
+_REMEMBERED = 1000  # distinct warnings
 _WITHOUT_TOPICS = '/rosout_disable_topics_generation'  # a parameter of rospy
 _LEVELS = {
     'debug': logging.DEBUG,
@@ -37,9 +36,6 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
     ours.setLevel(rosout.level)
     ours.propagate = False
     _remember_parameter()
-    for name in tuple(logging.root.manager.loggerDict):
-        if name.startswith(_PLUGINS):
-            logging.getLogger(name).addFilter(DuplicateFilter())
 
 
 def set_level(name: str) -> None:
@@ -71,22 +67,21 @@ def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:
     return handlers
 
 
-class DuplicateFilter(logging.Filter):
-    """Passes each message once: a robot that is spawned again causes the same warnings."""
+class FaultLog:
+    """Logs faults; a warning of a plugin once, as a robot that is spawned again gives the same."""
 
     def __init__(self) -> None:
-        super().__init__()
         self._seen: set[str] = set()
 
-    def filter(self, record: logging.LogRecord) -> bool:
-        """Tell whether the message is new, or was forgotten since."""
-        text = record.getMessage()
-        if text in self._seen:
-            return False
-        if len(self._seen) >= _REMEMBERED:
-            self._seen.clear()
-        self._seen.add(text)
-        return True
+    def __call__(self, fault: Fault) -> None:
+        """Log a fault, unless it is such a warning that was logged and not forgotten since."""
+        if fault.severity == logging.WARNING and fault.element.startswith('plugin '):
+            if str(fault) in self._seen:
+                return
+            if len(self._seen) >= _REMEMBERED:
+                self._seen.clear()
+            self._seen.add(str(fault))
+        log_fault(fault)
 
 
 class RecordPreparation(logging.Handler):

@@ -6,7 +6,6 @@ Publishes:
         since on /tf a robot may have two parents or none, and stamps may jump back.
 """
 
-import rospy
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
@@ -15,7 +14,7 @@ from ...sim.runtime import World
 from ..messages import fill_transform
 from ..server import Server
 from .markers import FRAME
-from .visuals import PERIOD, Viewers
+from .visuals import publish_changes
 
 
 class ShownFrames:
@@ -48,14 +47,4 @@ def _transform(name: str, pose: Pose) -> TransformStamped:
 
 def advertise_frames(server: Server) -> None:
     """Advertise the frames and update them in wall time, also while paused."""
-    shown = ShownFrames(server.world)
-    publisher = rospy.Publisher('~view/frames', TFMessage, Viewers(server, shown), queue_size=10)
-
-    def show() -> None:
-        if publisher.get_num_connections() == 0:
-            return
-        moved = shown.changes()
-        if moved:
-            publisher.publish(TFMessage(moved))
-
-    server.loop.every(PERIOD, show)
+    publish_changes(server, '~view/frames', TFMessage, ShownFrames(server.world))

@@ -23,7 +23,7 @@ PERIOD = 1.0 / 30.0  # between two updates [s, wall]
 def advertise_scene(server: Server) -> None:
     """Advertise the scene and update it in wall time, also while paused."""
     shown = ShownWorld(server.world)
-    scene = rospy.Publisher('~view/scene', String, Viewers(server, shown), queue_size=100)
+    scene = rospy.Publisher('~view/scene', String, Viewers(server, shown.reset), queue_size=100)
     motion = rospy.Publisher('~view/motion', Float64MultiArray, queue_size=1)
     started = time.monotonic()
 

@@ -7,11 +7,12 @@ Publishes:
         on this machine, with baked sunlight.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from typing import Protocol
 
 import rospy
+from genpy import Message
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...sim.core import Pose
@@ -41,14 +42,10 @@ class LinkView:
             if file is not None:
                 use_sunlit(marker, file)
 
-    def invalidate(self) -> None:
-        """Publish again at the next update."""
-        self._shown = None
-
-    def moved(self) -> list[Marker]:
-        """Return the markers with their new poses; none if the link has not moved."""
+    def moved(self, refresh: bool) -> list[Marker]:
+        """Return the markers with their new poses; none if it has not moved, without `refresh`."""
         pose = self._link.pose
-        if pose == self._shown:
+        if pose == self._shown and not refresh:
             return []
         self._shown = pose
         for marker, visual in zip(self.markers, self._link.spec.visuals, strict=True):
@@ -86,9 +83,7 @@ class ShownMarkers:
                     continue
                 self._models[name] = model, views
             for link in self._models[name][1]:
-                if refresh:
-                    link.invalidate()
-                markers += link.moved()
+                markers += link.moved(refresh)
         return markers
 
     def _views(self, _name: str, model: Model) -> list[LinkView] | None:
@@ -138,6 +133,9 @@ def _shown_links(model: Model) -> list[Link]:
 class IncrementalView(Protocol):
     """A view that publishes changes only."""
 
+    def changes(self) -> Sequence[Message]:
+        """Return what has changed since the last update."""
+
     def reset(self) -> None:
         """Publish everything at the next update."""
 
@@ -145,32 +143,32 @@ class IncrementalView(Protocol):
 class Viewers(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no types
     """Lets a view publish everything for a new subscriber."""
 
-    def __init__(self, server: Server, view: IncrementalView) -> None:
-        self._server = server
-        self._view = view
+    def __init__(self, server: Server, reset: Callable[[], None]) -> None:
+        self._server, self._reset = server, reset
 
     def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
         """Handle a new subscriber."""
-        self._server.loop.post(self._view.reset)
+        self._server.loop.post(self._reset)
 
 
 def advertise_visuals(server: Server) -> None:
     """Advertise the markers and update them in wall time, also while paused."""
     thread = ThreadPoolExecutor(1, 'sunlit_meshes')
-    _advertise(server, '~visual_markers', ShownMarkers(server.world))
-    _advertise(server, '~view/markers', SunlitMarkers(server.world, SunlitMeshes(), thread))
+    sunlit = SunlitMarkers(server.world, SunlitMeshes(), thread)
+    publish_changes(server, '~visual_markers', MarkerArray, ShownMarkers(server.world), latch=True)
+    publish_changes(server, '~view/markers', MarkerArray, sunlit, latch=True)
 
 
-def _advertise(server: Server, topic: str, view: ShownMarkers) -> None:
-    publisher = rospy.Publisher(
-        topic, MarkerArray, Viewers(server, view), latch=True, queue_size=10
-    )
+def publish_changes(
+    server: Server, topic: str, kind: type[Message], view: IncrementalView, latch: bool = False
+) -> None:
+    """Advertise a topic and publish what changes in a view, in wall time, also while paused."""
+    resets = Viewers(server, view.reset)
+    publisher = rospy.Publisher(topic, kind, resets, latch=latch, queue_size=10)
 
     def show() -> None:
-        if publisher.get_num_connections() == 0:
-            return
-        markers = view.changes()
-        if markers:
-            publisher.publish(MarkerArray(markers))
+        changes = view.changes() if publisher.get_num_connections() else ()
+        if changes:
+            publisher.publish(kind(changes))
 
     server.loop.every(PERIOD, show)

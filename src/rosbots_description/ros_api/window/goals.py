@@ -73,9 +73,9 @@ class RosGoals:
     def _send(
         self,
         topic: str,
-        message: Any,
+        message: Any,  # noqa: ANN401
         frame: str,
-        field: PoseMessage,  # noqa: ANN401
+        field: PoseMessage,
         pose: Pose,
     ) -> None:
         message.header.frame_id, message.header.stamp = frame, rospy.Time.now()

@@ -20,6 +20,8 @@ from .worlds import RosWorlds
 class GazeboSimulator:
     """What `web.Page` asks for, over the topics and services of `gazebo`."""
 
+    faults = None  # they are in its log; ROS has no place for them
+
     def __init__(self) -> None:
         topics = TopicGraph()
         self.view = RosView()

@@ -8,7 +8,7 @@ from support import ROOT
 
 from rosbots_description.ros_api.node import packages
 from rosbots_description.ros_api.node.world_loading import own_worlds, read_world
-from rosbots_description.sim.core import held_records, replay
+from rosbots_description.sim.core import reporting_to
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 
 EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'
@@ -198,10 +198,9 @@ def test_messages_while_reading_are_kept_for_the_node(tmp_path, caplog):
         '<sdf version="1.6"><world name="w"><include>'
         '<uri>model://nowhere</uri></include></world></sdf>',
     )
-    with held_records() as records:
+    faults = []
+    with reporting_to(faults.append):
         read_world(str(path))
     assert caplog.records == []
-    replay(records)
-    (record,) = caplog.records
-    assert record.levelno == logging.ERROR
-    assert 'model://nowhere' in record.getMessage()
+    assert [fault.severity for fault in faults] == [logging.ERROR]
+    assert 'model://nowhere' in str(faults[0])

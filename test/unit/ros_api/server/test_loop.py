@@ -62,7 +62,7 @@ class CountingWorld:
         self.steps = 0
         self.longest_batch = 0
         self.batches = 0
-        self.clock = self
+        self.clock = self.faults = self
         self.schedule = self
         self._interest = interest
         self._step_time, self._sleep = step_time, sleep
@@ -72,6 +72,9 @@ class CountingWorld:
 
     def next_wanted(self):
         return (self.steps // self._interest + 1) * self._interest
+
+    def add(self, fault):
+        raise AssertionError(fault)
 
     def run(self, steps):
         self.steps += steps

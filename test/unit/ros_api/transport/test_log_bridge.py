@@ -1,6 +1,7 @@
 """Each log record reaches the handlers as one line, whatever names it contains."""
 
 import logging
+from dataclasses import replace
 from unittest.mock import Mock
 
 import pytest
@@ -10,7 +11,8 @@ from rospy.impl import paramserver, rosout
 from rospy.msproxy import MasterProxy
 
 from rosbots_description.ros_api.transport import log_bridge
-from rosbots_description.ros_api.transport.log_bridge import DuplicateFilter, RecordPreparation
+from rosbots_description.ros_api.transport.log_bridge import FaultLog, RecordPreparation
+from rosbots_description.sim.core import Fault
 
 
 @pytest.fixture
@@ -32,16 +34,20 @@ def test_a_long_name_is_cut(logger, caplog):
     assert len(caplog.messages[0]) < 2000
 
 
-def test_repeated_message_is_suppressed_until_it_is_forgotten(logger, caplog):
-    duplicates = DuplicateFilter()
-    logger.addFilter(duplicates)
-    try:
-        for name in ['torque', 'torque', 'legacyMode', *map(str, range(1000)), 'torque']:
-            logger.warning('<%s> is not read', name)
-    finally:
-        logger.removeFilter(duplicates)
+def test_a_warning_of_a_plugin_is_logged_once_until_it_is_forgotten(caplog):
+    log = FaultLog()
+    for name in ['torque', 'torque', 'legacyMode', *map(str, range(1000)), 'torque']:
+        log(Fault(f'<{name}> is not read', element="plugin 'drive'"))
     assert caplog.messages[:2] == ['<torque> is not read', '<legacyMode> is not read']
     assert caplog.messages.count('<torque> is not read') == 2
+
+
+@pytest.mark.parametrize('where', [{'severity': logging.ERROR}, {'element': "joint 'j'"}])
+def test_other_faults_are_logged_each_time(caplog, where):
+    log, fault = FaultLog(), replace(Fault('bad', element="plugin 'drive'"), **where)
+    log(fault)
+    log(fault)
+    assert caplog.messages == ['bad', 'bad']
 
 
 @pytest.mark.parametrize(('answer', 'value'), [({}, False), (True, True)])  # {}: it is not set

@@ -56,7 +56,7 @@ HELD = {  # what makes an object, and the attributes that we read or set
     server: 'server_sock is_shutdown inbound_handler',
     registration.get_registration_listeners: 'listeners',
     registration.get_service_manager: 'get_services',
-    registration.get_topic_manager: 'get_publications get_subscriptions',
+    registration.get_topic_manager: 'get_publications get_subscriptions get_subscriber_impl',
     lambda: registration.Registration: 'PUB SUB SRV',
     lambda: rospy.exceptions: 'TransportException TransportTerminated',
 }

@@ -25,9 +25,9 @@ from ....sim.controllers import Gains, MimicJointPlugin, Pid, RosControl
 from ....sim.core import SimError
 from ....sim.formats import load_robot_control
 from ...transport import is_valid_name, read_parameter, search_parameter, topic_name
-from ..adapter import Adapter, where
+from ..adapter import Adapter, owner_name
 from ..declarations import Endpoint
-from ..registry import AdapterSet, connects
+from ..registry import AdapterSet, declare_topics
 
 logger = logging.getLogger(__name__)
 
@@ -77,7 +77,7 @@ class ControlEndpoint(Endpoint):
         if not is_valid_name(topic):
             logger.error(
                 "%s: <eStopTopic> is '%s', which is no name of a topic",
-                where(self._plugin),
+                owner_name(self._plugin),
                 self._plugin.e_stop_topic,
             )
             return
@@ -159,7 +159,7 @@ class ControlEndpoint(Endpoint):
             logger.warning(
                 '%s: the services of %s are those of another robot; a <robotNamespace> of its '
                 'own would give this one its own',
-                where(self._plugin),
+                owner_name(self._plugin),
                 self.name,
             )
         else:
@@ -210,5 +210,5 @@ class MimicGains(Endpoint):
         adapter.server.loop.post(configure)
 
 
-connects(RosControl, Controls())
-connects(MimicJointPlugin, ReadsGains())
+declare_topics(RosControl, Controls())
+declare_topics(MimicJointPlugin, ReadsGains())

@@ -14,7 +14,7 @@ from sensor_msgs.msg import Imu
 from ....sim.controllers import IMU, SensorController
 from ...messages import ImuLayout
 from ...transport import is_valid_name, topic_name
-from ..adapter import Adapter, where
+from ..adapter import Adapter, owner_name
 from ..declarations import Endpoint, PublishedTopic, Publishes
 from ..wrenches import wrench_message
 from .topics import connects_controller
@@ -42,7 +42,7 @@ class SensorTopics(Endpoint):
             if not is_valid_name(topic_name(controller.namespace, sensor)):
                 logger.error(
                     "%s: no topic for the sensor '%s', since ROS has no such names",
-                    where(controller),
+                    owner_name(controller),
                     sensor,
                 )
                 continue
@@ -70,7 +70,7 @@ class SensorTopics(Endpoint):
 
 
 def _imu(sensor: str, frame: str) -> Publishes:
-    return Publishes(sensor, sensor, Imu, pack=lambda _adapter: ImuLayout(frame).pack)
+    return Publishes(sensor, sensor, Imu, serializer=lambda _adapter: ImuLayout(frame).pack)
 
 
 connects_controller(SensorController, ReportsSensors())

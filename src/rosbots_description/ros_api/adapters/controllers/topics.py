@@ -50,10 +50,10 @@ from ....sim.controllers import FourWheelSteering as AxleSteering
 from ....sim.core import Twist as Velocity
 from ...messages import OdometryLayout, TransformLayout, fill_twist
 from ...transport import topic_name
-from ..adapter import Adapter, where
-from ..declarations import Declaration, Endpoint, Offers, Pack, Publishes, Subscribes, finite
-from ..packs import JointStatesPack
-from ..registry import connects
+from ..adapter import Adapter, owner_name
+from ..declarations import Declaration, Endpoint, Offers, Publishes, Serializer, Subscribes, finite
+from ..registry import declare_topics
+from ..serializers import JointStatesSerializer
 from .trajectory_messages import fill_state
 
 logger = logging.getLogger(__name__)
@@ -90,7 +90,7 @@ def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
         except rospy.ServiceException:
             logger.warning(
                 '%s: there is a server of dynamic_reconfigure in %s already',
-                where(adapter.plugin),
+                owner_name(adapter.plugin),
                 name,
             )
         else:
@@ -99,7 +99,7 @@ def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
 
 def connects_controller(owner: type[Controller], *declared: Declaration) -> None:
     """Give the controllers of a class these topics, and those of their gains."""
-    connects(owner, *declared, TunesGains())
+    declare_topics(owner, *declared, TunesGains())
 
 
 def read_data(message: Float64 | Float64MultiArray) -> tuple[Any, ...]:
@@ -143,13 +143,13 @@ def steering_message(steering: AxleSteering) -> FourWheelSteeringStamped:
     )
 
 
-def odometry_pack(adapter: Adapter) -> Pack:
+def odometry_serializer(adapter: Adapter) -> Serializer:
     """Return the function that serialises a drive's odometry; its frames take no prefix."""
     drive = cast(DriveController, adapter.plugin)
     return OdometryLayout(*_frames(drive), drive.pose_variances, drive.twist_variances).pack
 
 
-def transform_pack(adapter: Adapter) -> Pack:
+def transform_serializer(adapter: Adapter) -> Serializer:
     """Return the function that serialises the transform of a drive."""
     layout = TransformLayout(*_frames(cast(DriveController, adapter.plugin)))
     return lambda _number, now_ns, edge: layout.pack(now_ns, edge.pose)
@@ -178,13 +178,17 @@ COMMAND, SIDEWAYS = (
 )
 ODOMETRY = (
     Publishes(
-        'odometry', DriveController.topic_names['odometry'], Odometry, pack=odometry_pack, queue=100
+        'odometry',
+        DriveController.topic_names['odometry'],
+        Odometry,
+        serializer=odometry_serializer,
+        queue=100,
     ),
     Publishes(
         'odometry_transform',
         DriveController.topic_names['odometry_transform'],
         TFMessage,
-        pack=transform_pack,
+        serializer=transform_serializer,
         queue=100,
     ),
     Publishes(
@@ -204,7 +208,7 @@ connects_controller(
         'joint_states',
         JointStateController.topic_names['joint_states'],
         JointState,
-        pack=JointStatesPack,
+        serializer=JointStatesSerializer,
         queue=1000,
     ),
 )

@@ -1,4 +1,4 @@
-"""Serializers of readings that are published often: `pack` of `Publishes`."""
+"""Serializers of readings that are published often: `serializer` of `Publishes`."""
 
 import logging
 from typing import Any
@@ -7,12 +7,12 @@ from ...sim.runtime import FrameTransform, JointStates
 from ..messages import JointStatesLayout, OdometryLayout, TransformLayout
 from ..server import from_root
 from .adapter import Adapter
-from .declarations import Pack
+from .declarations import Serializer
 
 logger = logging.getLogger(__name__)
 
 
-def odometry_pack(adapter: Adapter) -> Pack:
+def odometry_serializer(adapter: Adapter) -> Serializer:
     """Return what lays the odometry of a drive out."""
     plugin: Any = adapter.plugin  # one that has variances, as those have that give odometry out
     parent, child = (
@@ -21,7 +21,7 @@ def odometry_pack(adapter: Adapter) -> Pack:
     return OdometryLayout(parent, child, plugin.pose_variances, plugin.twist_variances).pack
 
 
-class TransformPack:
+class TransformSerializer:
     """Lays transforms out; how each is laid out stays, once its frames are known."""
 
     def __init__(self, adapter: Adapter) -> None:
@@ -44,7 +44,7 @@ class TransformPack:
         return layout.pack(now_ns, pose)
 
 
-class RootedTransformPack(TransformPack):
+class RootedTransformSerializer(TransformSerializer):
     """Moves what another node holds together by its root, in place of the robot's frame."""
 
     _logged = ''  # said once, not with every message
@@ -75,7 +75,7 @@ class RootedTransformPack(TransformPack):
             )
 
 
-class JointStatesPack:
+class JointStatesSerializer:
     """Lays joint states out; the names of the first ones stay."""
 
     def __init__(self, _adapter: Adapter) -> None:
