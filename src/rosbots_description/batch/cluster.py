@@ -10,6 +10,7 @@ import socket
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from ..sim.core import one_line
@@ -57,7 +58,7 @@ def rows(
                     ray.cancel(reference, force=True)
 
 
-def _require_worker(ray: Any) -> None:  # noqa: ANN401
+def _require_worker(ray: ModuleType) -> None:
     """Wait for the first answer of a worker."""
     from ray.exceptions import RayError
 
@@ -83,10 +84,10 @@ def _attempt() -> int:
 
 
 def _result(
-    ray: Any,
+    ray: ModuleType,
     file: ScenarioFile,
     number: int,
-    reference: Any,  # noqa: ANN401
+    reference: object,
 ) -> tuple[dict[str, Any], int]:
     """Return the row of a task that has ended, in whatever way, and its number of attempts."""
     from ray.exceptions import RayError, RayTaskError
@@ -104,7 +105,7 @@ def _result(
 
 
 @contextlib.contextmanager
-def _connected(workers: int | None, address: str | None) -> Iterator[Any]:
+def _connected(workers: int | None, address: str | None) -> Iterator[ModuleType]:
     """Yield the module ray, connected; disconnect, and end what was started here."""
     if workers is not None and (workers < 1 or address is not None):
         raise ClusterError('workers takes at least 1, or 0 for none, and only without an address')
@@ -142,7 +143,7 @@ def _require_listener(address: str | None) -> None:
 
 
 @contextlib.contextmanager
-def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
+def _session(ray: ModuleType, **arguments: object) -> Iterator[None]:
     """Connect quietly, unless the caller has connected already."""
     if ray.is_initialized():
         yield
@@ -155,7 +156,7 @@ def _session(ray: Any, **arguments: Any) -> Iterator[None]:  # noqa: ANN401
             ray.shutdown()
 
 
-def _connect(ray: Any, **arguments: Any) -> None:  # noqa: ANN401
+def _connect(ray: ModuleType, **arguments: object) -> None:
     """Connect without Ray's logging and signal handler."""
     before = signal.getsignal(signal.SIGTERM) or signal.SIG_DFL
     try:
@@ -185,7 +186,7 @@ def _silent() -> Iterator[None]:
         worker.print_to_stdstream = say
 
 
-def _ray() -> Any:  # noqa: ANN401  the module
+def _ray() -> ModuleType:
     try:
         return importlib.import_module('ray')
     except ImportError:

@@ -151,7 +151,7 @@ def _distribution(
     return draw
 
 
-def substitute(content: Any, values: Mapping[str, Value]) -> Any:  # noqa: ANN401  YAML's types
+def substitute(content: object, values: Mapping[str, Value]) -> object:
     """Return a copy with `$name` or `${name}` replaced in all texts; `$$` is a dollar sign.
 
     A text that is nothing else becomes the value itself, with its type.

@@ -1,8 +1,8 @@
 """What is recorded in a run: a number of each reading, and its statistics."""
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -58,11 +58,11 @@ def value_at(reading: object, path: str) -> float:
     return float(part)
 
 
-def _is_sequence(part: object) -> bool:
+def _is_sequence(part: object) -> TypeGuard[Sequence[Any]]:
     return isinstance(part, tuple | list | np.ndarray) and not hasattr(part, '_fields')
 
 
-def _names(part: Any) -> tuple[str, ...]:  # noqa: ANN401  any reading
+def _names(part: object) -> tuple[str, ...]:
     if hasattr(part, '_fields'):
         return tuple(part._fields)
     if not _is_sequence(part):

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 FLUSH_PERIOD = 2.0  # between two files of rows [s, wall]
 
+Scenario = str | os.PathLike[str] | Mapping[str, Any] | ScenarioFile  # a path, or its content
 # Called with the number of rows, that of all runs, and that of runs repeated so far.
 Progress = Callable[[int, int, int], None]
 
@@ -36,7 +37,7 @@ class Result(NamedTuple):
 
 
 def run(
-    scenario: str | os.PathLike[str] | Mapping[str, Any] | ScenarioFile,
+    scenario: Scenario,
     parameters: Mapping[str, Any] | None = None,
     *,
     workers: int | None = None,
@@ -84,7 +85,7 @@ def run(
         return Result(table.table(), repeated, table.fault)
 
 
-def _as_file(scenario: Any, parameters: Mapping[str, Any] | None) -> ScenarioFile:  # noqa: ANN401
+def _as_file(scenario: Scenario, parameters: Mapping[str, Any] | None) -> ScenarioFile:
     if isinstance(scenario, ScenarioFile):
         if parameters:
             raise ScenarioError('a ScenarioFile has its parameters already')

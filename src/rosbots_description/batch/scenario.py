@@ -153,7 +153,9 @@ class ScenarioFile:
         self._rest = rest
         first = self.scenario(self.parameters.run(0))
         self.columns = first.columns
-        taken = {'run', 'seed', 'outcome', 'reason', *self.columns} & set(self.parameters.names)
+        taken = {'run', 'seed', 'outcome', 'reason', 'faults', *self.columns} & set(
+            self.parameters.names
+        )
         if taken:
             raise ScenarioError(f"the parameter '{min(taken)}' has the name of a column; rename it")
         self.conditions(first)

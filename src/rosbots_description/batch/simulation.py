@@ -4,11 +4,12 @@ import contextlib
 import logging
 import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
-from ..sim import Joint, Link, Model, Odometry, SimError, World
-from ..sim.core import NANOSECONDS, held_records, one_line
+from ..sim import Fault, Joint, Link, Model, Odometry, SimError, World
+from ..sim.core import MOST_FAULTS, NANOSECONDS, one_line
 from .parameters import Run
 from .policy import Policy, PolicyError, commands_of, in_words, load_policy
 from .records import JointReading, Statistics, value_at
@@ -22,17 +23,18 @@ def simulate(file: ScenarioFile, number: int) -> dict[str, Any]:
     """Make one run; return its row, whatever happens.
 
     The outcome is `passed`; `failed`, by a condition that does not hold; or `error`, if the run
-    could not be made or an error was logged in it. `reason` says why in one line.
+    could not be made or its world reported an error. `reason` says why in one line.
     """
     run = file.parameters.run(number)
     row = empty_row(file, run)
     try:
         scenario = file.scenario(run)
         conditions = file.conditions(scenario)
-        with held_records(logging.ERROR) as errors:
-            row |= _Simulation(file, run, scenario).columns()
-        if errors:
-            raise ScenarioError(errors[0].getMessage())
+        simulation = _Simulation(file, run, scenario)
+        row['faults'] = simulation.faults
+        row |= simulation.columns()
+        if simulation.faults:
+            raise ScenarioError(str(Fault(**simulation.faults[0])))
         faults = filter(None, (condition.fault(row) for condition in conditions))
         reason = next(faults, '')
     except (SimError, PolicyError, ValueError, OSError) as error:
@@ -49,6 +51,7 @@ def empty_row(file: ScenarioFile, run: Run) -> dict[str, Any]:
         'seed': run.seed,
         'outcome': ERROR,
         'reason': '',
+        'faults': [],
         **run.parameters,
         **dict.fromkeys(file.columns),
     }
@@ -59,6 +62,7 @@ class _Simulation:
 
     def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
         self._file, self._run, self._scenario = file, run, scenario
+        self.faults: list[dict[str, Any]] = []
         self._statistics = {
             name: Statistics() for name, record in scenario.record.items() if record.value
         }
@@ -69,7 +73,9 @@ class _Simulation:
     def columns(self) -> dict[str, float | None]:
         """Simulate; return what was recorded."""
         scenario, locate = self._scenario, self._file.locate
-        with World.from_file(locate(scenario.world), seed=self._run.seed) as world:
+        with World.from_file(
+            locate(scenario.world), seed=self._run.seed, on_fault=self._keep
+        ) as world:
             for model in scenario.models:
                 world.spawn(
                     model.text or locate(model.file),
@@ -85,6 +91,11 @@ class _Simulation:
         for name, statistics in self._statistics.items():
             found |= statistics.columns(name)
         return found
+
+    def _keep(self, fault: Fault) -> None:
+        """Keep an error; which warnings come may depend on what this process has read before."""
+        if fault.severity >= logging.ERROR and len(self.faults) < MOST_FAULTS:
+            self.faults.append(asdict(fault))
 
     def _open(self, world: World, name: str, record: RecordEntry) -> None:
         """Begin to record."""

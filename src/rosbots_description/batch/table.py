@@ -5,16 +5,19 @@ import fcntl
 import os
 import weakref
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 from pyarrow import parquet
 
+from ..sim import Fault
 from .scenario import ScenarioError, ScenarioFile
 
 FINAL, PARTS = 'rows.parquet', 'rows'
 _TYPES = {bool: pa.bool_(), int: pa.int64(), float: pa.float64(), str: pa.string()}
+_FAULT = pa.struct([(name, _TYPES[type(value)]) for name, value in asdict(Fault('')).items()])
 _KEY = b'scenario'
 
 
@@ -41,6 +44,7 @@ class Table:
                 ('seed', pa.int64()),
                 ('outcome', pa.string()),
                 ('reason', pa.string()),
+                ('faults', pa.list_(_FAULT)),
                 *((name, _TYPES[file.parameters.type_of(name)]) for name in names),
                 *((name, pa.float64()) for name in file.columns),
             ],

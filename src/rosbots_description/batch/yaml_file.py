@@ -3,7 +3,6 @@
 import os
 import stat
 from pathlib import Path
-from typing import Any
 
 import yaml
 
@@ -12,7 +11,7 @@ _MAX_DEPTH = 50  # of lists and mappings in each other
 _TOO_DEEP = f'its lists and mappings are nested more than {_MAX_DEPTH} times'
 
 
-def read_yaml(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401  whatever it holds
+def read_yaml(path: str | os.PathLike[str]) -> object:
     """Return the content of a YAML file: plain values only.
 
     Raises:

@@ -209,6 +209,8 @@ class SimEnv(gymnasium.Env[Observation, Any]):
     ) -> tuple[Observation, Info]:
         """Start an episode, and return its first observation and info.
 
+        In info, `faults` are those of the descriptions, and new ones.
+
         Args:
             seed: decides everything that is drawn at random, until the next seed.
             options: of the task.
@@ -220,14 +222,16 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         self._ready = True
         if self._window is not None:
             self._window.show(self.world)
-        return self.observe(), {**self.truth(), 'randomised': drawn}
+        faults = (*self._stage.found, *self._stage.new_faults())
+        return self.observe(), {**self.truth(), 'randomised': drawn, 'faults': faults}
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, Info]:  # noqa: ANN401
         """Drive for a control period.
 
         Returns:
             observation, reward, whether the task has ended, whether the episode is truncated
-            because numbers of the world were no longer finite, and info.
+            because numbers of the world were no longer finite, and info, with a tuple of new
+            `faults`.
 
         Raises:
             ValueError: the action has the wrong shape, or a number in it is not finite.
@@ -245,7 +249,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             float(reward),
             bool(terminated),
             self._stage.has_diverged,
-            self.truth(),
+            {**self.truth(), 'faults': self._stage.new_faults()},
         )
 
     def render(self) -> Any:  # noqa: ANN401

@@ -2,19 +2,21 @@
 
 import logging
 import os
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..sim import Pose, SimError, World, yaw_of
+from ..sim import Fault, Pose, SimError, World, yaw_of
+from ..sim.core import MOST_FAULTS, Receiver, log_fault
 from .actions import Actions, Limits
-from .load_warnings import warnings_as_one
 from .observations import forget, observed
 from .pictures import Pictures
 from .placement import Place, Range, move, move_freely
 
 logger = logging.getLogger(__name__)
+_logged: set[str] = set()  # what was logged of descriptions in this process
 
 _NANOSECONDS = 1_000_000_000
 Path = str | os.PathLike[str]
@@ -39,7 +41,8 @@ class Setting:
 class Stage:
     """A world with a robot; the robot has come to rest, and that state was saved.
 
-    `touched` are the names of the models that the robot touches at rest, such as the ground.
+    `touched` are the names of the models that the robot touches at rest, such as the ground;
+    `found` are the faults that came while both were loaded.
     """
 
     def __init__(self, setting: Setting) -> None:
@@ -50,22 +53,31 @@ class Stage:
             ValueError: a number is out of range.
         """
         self._setting = setting
+        self._new: deque[Fault] = deque(maxlen=MOST_FAULTS)
         self.is_open = True
         self._load()
 
     def _load(self) -> None:
-        with warnings_as_one(logger, 'loading the robot and its world'):
-            self._load_parts()
+        found: list[Fault] = []
+        try:
+            self._load_parts(found.append)
+        finally:
+            _log(found)
+        self.world.faults.on_fault = self._take
+        self.found = tuple(found)
         self.touched = frozenset(self.world.touching(self.robot))
         forget(self.robot)
         self._start = self.world.save_state()
         self._started_ns = self.world.clock.now_ns
         self._rebuilds = self.world.rebuilds
 
-    def _load_parts(self) -> None:
+    def _load_parts(self, on_fault: Receiver) -> None:
         given = self._setting
         self.world = World.from_file(
-            given.world, package_path=given.package_path, model_path=given.model_path
+            given.world,
+            package_path=given.package_path,
+            model_path=given.model_path,
+            on_fault=on_fault,
         )
         try:
             self.robot = self.world.spawn(given.robot, pose=given.pose, arguments=given.arguments)
@@ -78,6 +90,17 @@ class Stage:
         except BaseException:
             self.world.close()
             raise
+
+    def _take(self, fault: Fault) -> None:
+        """Log a fault, and keep it for the next info."""
+        self._new.append(fault)
+        log_fault(fault)
+
+    def new_faults(self) -> tuple[Fault, ...]:
+        """Return what was reported since the last call, at most `MOST_FAULTS`."""
+        new = tuple(self._new)
+        self._new.clear()
+        return new
 
     def close(self) -> None:
         """Free the world; idempotent."""
@@ -141,3 +164,17 @@ class Stage:
                 f'world, {step_ns / _NANOSECONDS:g} s'
             )
         return steps
+
+
+def _log(faults: Iterable[Fault]) -> None:
+    """Log errors, and warnings as one, unless this process has: a robot gives the same again."""
+    for fault in faults:
+        if fault.severity > logging.WARNING:
+            log_fault(fault)
+    found = [str(fault) for fault in faults if fault.severity == logging.WARNING]
+    count = f'{len(found)} warnings' if len(found) > 1 else 'a warning'
+    given = f'loading the robot and its world gave {count}'
+    message = f'{given}, not to be repeated: {"; ".join(found)}'
+    if found and message not in _logged:
+        _logged.add(message)
+        logger.warning('%s', message)

@@ -1,10 +1,12 @@
 """Batches on Ray: the same rows whatever the workers, and nothing lost with those that die."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -14,8 +16,9 @@ from pyarrow import parquet
 from support.batches import pushed_ball
 from support.listening import listening
 from support.patience import wait_until
+from support.ray_machines import run_on_several_machines
 
-from rosbots_description.batch import ClusterError, cluster, local_ray, run
+from rosbots_description.batch import ClusterError, cluster, run
 from rosbots_description.cli.launched import descendants
 
 pytest.importorskip('ray')
@@ -98,33 +101,12 @@ def test_messages_of_ray_stay_off_the_console_from_connecting_to_the_end(monkeyp
     assert 'a worker died' in capfd.readouterr().out
 
 
-def test_a_lost_machine_of_several_loses_no_run(tmp_path, monkeypatch):
+def test_a_lost_machine_of_several_loses_no_run(tmp_path):
     expected = run(scenario(tmp_path), workers=0).table
-    with tempfile.TemporaryDirectory(prefix='rb') as place, local_ray.private_environment():
-        Path(place, 'ray').mkdir()  # for what Cluster writes
-        monkeypatch.setenv('RAY_TMPDIR', place)
-        monkeypatch.setenv('RAY_health_check_period_ms', '500')  # by default it takes 15 s
-        from ray.cluster_utils import Cluster
-
-        several = Cluster(
-            initialize_head=True,
-            head_node_args={
-                'num_cpus': 0,
-                'include_dashboard': False,
-                'include_log_monitor': False,
-                'no_monitor': True,
-                'temp_dir': place,
-                'object_store_memory': cluster.STORE_BYTES,
-            },
-        )
-        try:
-            for _ in range(2):
-                several.add_node(num_cpus=1, object_store_memory=cluster.STORE_BYTES)
-            all_of_it = '[os.getppid(), os.getpid()]'  # what Ray has there, and the worker
-            doomed = scenario(tmp_path, once=[7], victims=all_of_it)
-            made = run(doomed, address=several.address)
-        finally:
-            several.shutdown()
+    all_of_it = '[os.getppid(), os.getpid()]'  # what Ray has there, and the worker
+    doomed = scenario(tmp_path, once=[7], victims=all_of_it)
+    with ProcessPoolExecutor(1, multiprocessing.get_context('spawn')) as alone:
+        made = alone.submit(run_on_several_machines, doomed).result(PATIENCE)
     assert made.repeated >= 1
     assert made.table.equals(expected)
 

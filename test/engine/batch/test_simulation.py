@@ -1,7 +1,5 @@
 """Runs in this process: what is simulated, recorded and judged, and what is said of bad input."""
 
-import logging
-
 import pytest
 from support import ROOT
 from support.batches import BALL, FLOATING, MASS, full_disk, only_row, pushed_ball
@@ -45,6 +43,7 @@ def test_a_pushed_ball_moves_as_newton_says():
     assert row['x_max'] == row['x_end']
     assert row['x_min'] == 0.0
     assert (row['outcome'], row['reason'], row['force']) == ('passed', '', 3.0)
+    assert row['faults'] == []
 
 
 def test_a_condition_that_does_not_hold_fails_the_run_with_its_values():
@@ -144,7 +143,6 @@ def test_the_example_passes_where_the_tyres_grip():
 def test_no_message_of_the_library_reaches_the_console(capfd):
     only_row(pushed_ball(models=[{'name': 'ball', 'text': '<robot name="r"/>'}]))
     assert capfd.readouterr() == ('', '')
-    assert logging.getLogger('rosbots_description').propagate
 
 
 @pytest.mark.parametrize(
@@ -258,6 +256,10 @@ def test_a_part_of_a_model_that_is_left_out_is_an_error():
     row = only_row(pushed_ball(models=[broken], commands=[]))
     assert row['outcome'] == 'error'
     assert 'bell does not exist' in row['reason']
+    (fault,) = row['faults']
+    assert row['reason'] == fault['what']
+    assert (fault['model'], fault['element'], fault['step']) == ('ball', "plugin 'push'", 0)
+    assert not fault['internal']
 
 
 def test_the_runs_beside_a_bad_one_are_made():

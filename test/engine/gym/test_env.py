@@ -1,5 +1,6 @@
 """The environments of Gymnasium: spaces, exact periods, determinism, and bad input."""
 
+import logging
 import math
 import re
 import warnings
@@ -74,7 +75,7 @@ def rollout(env, seed, steps=8):
         if terminated or truncated:
             break
     return b''.join(
-        repr(value).encode() if isinstance(value, dict) else np.asarray(value).tobytes()
+        repr(value).encode() if isinstance(value, dict | tuple) else np.asarray(value).tobytes()
         for part in parts
         for _, value in sorted(part.items())
     )
@@ -215,6 +216,19 @@ def test_errors_of_a_description_are_logged_each_time(caplog):
         assert [record.levelname for record in caplog.records].count('ERROR') == 1
 
 
+def test_info_has_the_faults_of_the_descriptions_and_then_the_new_ones():
+    env = Push(CART.replace('libgazebo_ros_force.so', 'libgazebo_ros_nothing.so'), settle=0.0)
+    for _ in range(2):
+        _, info = env.reset(seed=0)
+        (fault,) = [one for one in info['faults'] if one.severity == logging.ERROR]
+        assert fault.element == "plugin 'libgazebo_ros_nothing.so'"
+        assert env.step(env.action_space.sample())[-1]['faults'] == ()
+    env.world.faults.report('the wheel is loose', model='cart')
+    assert env.step(env.action_space.sample())[-1]['faults'] == (env.world.faults[-1],)
+    assert env.step(env.action_space.sample())[-1]['faults'] == ()
+    env.close()
+
+
 def test_picture_follows_the_robot():
     env = Forward(render_mode='rgb_array', settle=0.3)
     env.reset(seed=0)
@@ -243,7 +257,11 @@ def test_episode_is_truncated_when_the_world_diverges_and_the_next_is_as_in_a_ne
     one, other = Forward(settle=0.3), Forward(settle=0.3)
     one.reset(seed=3)
     one.robot.joint('wheel_left_joint').set_position(math.nan)
-    assert one.step(np.zeros(2))[2:4] == (False, True)
+    _, _, terminated, truncated, info = one.step(np.zeros(2))
+    assert (terminated, truncated) == (False, True)
+    (fault,) = info['faults']
+    assert (fault.model, fault.severity) == (one.robot.name, logging.ERROR)
+    assert fault.what in caplog.text
     caplog.clear()
     assert rollout(one, 4) == rollout(other, 4)
     assert 'the world is loaded again' in caplog.text
