@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure a class: many viewers of one world over ROS, and many worlds with a viewer each.
+"""Measure a class: many viewers of one world, and many worlds with a viewer each, also over ROS.
 
 Clients that decode the page's connection take the browsers' places, on the same processors: what
 browsers draw is their own affair. A robot drives in each world, so that there is motion to show.
@@ -18,7 +18,16 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from server import PATIENCE, SYSTEM_TIME, USER_TIME, Server, run_in_new_process
+from server import (
+    PATIENCE,
+    SYSTEM_TIME,
+    USER_TIME,
+    Server,
+    free_port,
+    launched,
+    run_in_new_process,
+    wait_until,
+)
 from support.browser import Browser
 from web import Window
 
@@ -26,8 +35,8 @@ WINDOW = 8.0  # [s, wall]
 VIEWERS, WORLDS = 20, 10
 LEAST_FACTOR, LEAST_RATE = 0.95, 20.0  # of real time; [Hz] of a viewer's frames
 ROBOT = Path(__file__).resolve().parents[1] / 'urdf' / 'rosbots.xacro'
-ADDRESS = re.compile(r'rosbots-view: the world is at (\S+)')
-CLOCK = re.compile(r'Simulated time\s+(\d+):(\d+):([\d.]+)\s+Real time\s+(\d+):(\d+):([\d.]+)')
+ADDRESS = re.compile(r'(?:rosbots-view|gzweb): the world is at (\S+)')
+CLOCK = re.compile(r'real time (\d+):(\d+):([\d.]+), .*<b>(\d+):(\d+):([\d.]+)<')
 POLL = 0.25  # [s, wall] between two looks at a viewer's clock
 HOLD = 0.3  # [s, wall] between two commands to drive, which last for 0.6 s
 
@@ -104,14 +113,15 @@ class Viewer:
         )
 
     def _clock(self) -> tuple[float, float] | None:
-        match = CLOCK.search('\n'.join(self.browser.texts()))
+        match = CLOCK.search('\n'.join(self.browser.contents()))
         if match is None:
             return None
-        hours, minutes, seconds, *real = map(float, match.groups())
-        return (
-            3600.0 * hours + 60.0 * minutes + seconds,
-            3600.0 * real[0] + 60.0 * real[1] + real[2],
+        numbers = [float(number) for number in match.groups()]
+        real, simulated = (
+            3600.0 * hours + 60.0 * minutes + seconds
+            for hours, minutes, seconds in (numbers[:3], numbers[3:])
         )
+        return simulated, real
 
 
 def watch_all(viewers: Sequence[Viewer], model: str, drives: bool) -> None:
@@ -197,10 +207,36 @@ def measure_worlds() -> None:
         tell(f'{WORLDS} worlds with a viewer each', viewers)
 
 
+def measure_students() -> None:
+    """Print what the viewers of as many student.launch see, each with a ROS master of its own."""
+    with ExitStack() as stack:
+        logs = []
+        for number in range(WORLDS):
+            student = launched(
+                f'student{number}',
+                *('-p', str(free_port()), 'rosbots_description', 'student.launch'),
+                *('student:=0', f'first_port:={free_port()}'),
+            )
+            stack.enter_context(student)
+            logs.append(student.log)
+
+        def addresses() -> list[str]:
+            found = (ADDRESS.search(log.read_text('utf-8', errors='replace')) for log in logs)
+            return [match[1] for match in found if match]
+
+        wait_until(lambda: len(addresses()) == WORLDS, 'the pages of all students')
+        viewers = [Viewer(address) for address in addresses()]
+        for viewer in viewers:
+            stack.enter_context(viewer.browser)
+        watch_all(viewers, 'rosbots', drives=True)
+        tell(f'{WORLDS} worlds with a ROS master and a viewer each', viewers)
+
+
 def main() -> int:
     """Run each measurement in its own process; return the exit code."""
     run_in_new_process(measure_viewers)
     run_in_new_process(measure_worlds)
+    run_in_new_process(measure_students)
     return 0
 
 

@@ -8,7 +8,6 @@
     step     the same task over ROS, by scripts/ros_environment.py and /gazebo/step; without its
              contact sensor, which would take two thirds of the time
     pause    the same between unpause_physics and pause_physics
-    r2d2     the loop that PyBullet's own environments are made of, with its R2D2 on a plane
     mujoco   the same task in MuJoCo; see mujoco_room.py
     wander, maze, line      the other tasks, driven at random
     goal_physics, goal_scan, mujoco_physics, mujoco_scan      only this part of a control step
@@ -40,7 +39,6 @@ TASK = f'{TASKS}GoToGoal-v0'
 PER_CORE = 4  # environments in parallel, as a step of all waits for the slowest
 ENGINE_STEPS = 100  # of 1 ms in a control step
 _TURN = np.array((0.0, 0.3), np.float32)  # action in which only a part is measured
-WHEEL_SPEED, WHEEL_TORQUE = -10.0, 10.0  # of the R2D2 [rad/s], [N m]
 
 
 def cores() -> int:
@@ -167,42 +165,6 @@ def ros(exact: bool) -> Iterator[Steps]:
     rospy.signal_shutdown('measured')
 
 
-@contextlib.contextmanager
-def r2d2() -> Iterator[Steps]:
-    """Yield the step function of a minimal loop on PyBullet's R2D2."""
-    import pybullet
-    import pybullet_data
-
-    client = pybullet.connect(pybullet.DIRECT)
-    pybullet.setAdditionalSearchPath(pybullet_data.getDataPath(), client)
-    pybullet.setTimeStep(0.001, client)
-    pybullet.setGravity(0, 0, -9.8, client)
-    pybullet.loadURDF('plane.urdf', physicsClientId=client)
-    robot = pybullet.loadURDF('r2d2.urdf', [0.0, 0.0, 0.5], physicsClientId=client)
-    wheels = [
-        joint
-        for joint in range(pybullet.getNumJoints(robot, client))
-        if b'wheel' in pybullet.getJointInfo(robot, joint, client)[1]
-    ]
-
-    def step(steps: int) -> None:
-        for _ in range(steps):
-            pybullet.setJointMotorControlArray(
-                robot,
-                wheels,
-                pybullet.VELOCITY_CONTROL,
-                targetVelocities=[WHEEL_SPEED] * len(wheels),
-                forces=[WHEEL_TORQUE] * len(wheels),
-                physicsClientId=client,
-            )
-            for _ in range(ENGINE_STEPS):
-                pybullet.stepSimulation(client)
-            pybullet.getBasePositionAndOrientation(robot, client)
-
-    yield step
-    pybullet.disconnect(client)
-
-
 def main() -> int:
     """Measure windows until the input ends; return the exit code."""
     logging.disable(logging.WARNING)
@@ -210,7 +172,6 @@ def main() -> int:
     loops: dict[str, Callable[[], AbstractContextManager[Steps]]] = {
         'goal': goal,
         'reset': reset,
-        'r2d2': r2d2,
         'mujoco': mujoco,
         'vector': lambda: vector(one_core=False),
         'core': lambda: vector(one_core=True),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure environments of Gymnasium beside the same task in MuJoCo, over ROS, and bare PyBullet.
+"""Measure environments of Gymnasium beside the same task in MuJoCo, and over ROS.
 
 All loops run in processes of their own and alternate in short windows, so that ratios are of one
 run; see environments.py. What the robots do differs from window to window, so the median of all
@@ -35,7 +35,6 @@ KINDS = (
     'core',
     'step',
     'pause',
-    'r2d2',
 )
 PERIOD = 0.1  # [s, simulated] of a control step
 RESET = 2.0  # [ms] at most
@@ -99,7 +98,6 @@ def table(windows: Mapping[str, Sequence[float]], count: int) -> str:
                 (f'GoToGoal-v0, make_vec of {PER_CORE * count}', 'vector'),
                 ('over ROS by /gazebo/step', 'step'),
                 ('over ROS by unpause, wait, pause', 'pause'),
-                ('R2D2 of PyBullet, bare loop', 'r2d2'),
             )
         ),
         'part of a control step [ms]               ours     MuJoCo   quotient',
@@ -115,7 +113,6 @@ def table(windows: Mapping[str, Sequence[float]], count: int) -> str:
         _row('/ the same task in MuJoCo', _quotient(windows, 'goal', 'mujoco'), OF_MUJOCO),
         _row('/ over ROS by unpause, wait, pause', one / speeds['pause'], FASTER),
         _row('/ over ROS by /gazebo/step', one / speeds['step']),
-        _row('/ R2D2 of PyBullet', one / speeds['r2d2']),
         _row('processes / linear', speeds['cores'] / linear, LINEAR),
         _row('make_vec / linear from one core', vector / (speeds['core'] * count), LINEAR),
         _row('make_vec / linear from one process', vector / linear),

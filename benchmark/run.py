@@ -30,13 +30,15 @@ PARTS = {
     'physics': 330.0,
     'veer': 260.0,
     'speed': 560.0,
+    'rest': 30.0,
     'real_time': 140.0,
     'sensors': 235.0,
     'arm': 60.0,
     'gym': 180.0,
     'web': 130.0,
-    'classroom': 60.0,
+    'classroom': 100.0,
 }
+# only by name
 LONG = {
     'batch': 240.0,
     'returns': 720.0,
@@ -44,7 +46,7 @@ LONG = {
     'soak': 1530.0,
     'mutants': 9000.0,
     'fuzz': 1800.0,
-}  # only by name
+}
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
 GRACE = 2.0  # [s, wall] for processes to end after a signal
 _BECOME_SUBREAPER = 36  # of prctl: orphaned descendants become our children
@@ -118,6 +120,7 @@ def run(command: Sequence[str | Path], name: str, about: float) -> int:
     """
     with tempfile.TemporaryDirectory(prefix='rosbots_bench_', ignore_cleanup_errors=True) as folder:
         try:
+            # Ctrl-C reaches this process only, which ends the part
             part = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
@@ -125,7 +128,7 @@ def run(command: Sequence[str | Path], name: str, about: float) -> int:
                 stderr=subprocess.STDOUT,
                 env=os.environ | {'TMPDIR': folder, 'PYTHONUNBUFFERED': '1'},
                 start_new_session=True,
-            )  # Ctrl-C reaches this process only, which ends the part
+            )
             assert part.stdout is not None
             with part.stdout:
                 _pass_on(part, part.stdout, Progress(name, about, sys.stderr))

@@ -69,21 +69,22 @@ class Server:
             launch: package, launch file and its arguments; or the path of a launch file.
             roscore: start a roscore first; otherwise roslaunch starts the master.
         """
-        os.environ.update(ROS_MASTER_URI=_free_master(), ROS_HOSTNAME='localhost')
+        os.environ.update(
+            ROS_MASTER_URI=f'http://localhost:{free_port()}', ROS_HOSTNAME='localhost'
+        )
         logging.getLogger('rosout').setLevel(logging.WARNING)
-        OUTPUT.mkdir(parents=True, exist_ok=True)
         with ExitStack() as processes:  # ended here if one fails to start
             if roscore:
                 port = os.environ['ROS_MASTER_URI'].rsplit(':', 1)[1]
-                processes.enter_context(_launched('roscore', '--core', '-p', port))
+                processes.enter_context(launched('roscore', '--core', '-p', port))
                 wait_until(lambda: _is_registered('/rosout/get_loggers'), 'roscore')
             begin, begin_after_boot = time.monotonic(), time.clock_gettime(time.CLOCK_BOOTTIME)
-            launched = processes.enter_context(_launched('server', *launch, *arguments))
+            process = processes.enter_context(launched('server', *launch, *arguments))
             try:
                 self.seconds_to_spawn_service = self._wait_for('spawn_urdf_model') - begin
                 self._wait_for('step')  # the last one
             except TimeoutError:
-                raise TimeoutError(f'no simulator: {launched.error()}') from None
+                raise TimeoutError(f'no simulator: {process.error()}') from None
             self._processes = processes.pop_all()
         rospy.init_node('benchmark', disable_rostime=True, disable_signals=True)
         self._world = self.service('get_world_properties', GetWorldProperties)
@@ -200,7 +201,9 @@ class Server:
         return time.monotonic()
 
 
-def _launched(name: str, *arguments: str) -> Launched:
+def launched(name: str, *arguments: str) -> Launched:
+    """Start roslaunch, with its output in a file of that name."""
+    OUTPUT.mkdir(parents=True, exist_ok=True)
     return Launched(arguments, OUTPUT / f'{name}.log', os.environ)
 
 
@@ -224,10 +227,11 @@ def wait_until(condition: Callable[[], object], what: str) -> None:
         time.sleep(0.002)
 
 
-def _free_master() -> str:
+def free_port() -> int:
+    """Return the number of a port of this machine that nobody uses yet."""
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
-        return f'http://localhost:{probe.getsockname()[1]}'
+        return int(probe.getsockname()[1])
 
 
 def _process_of(node: str) -> int:

@@ -3,7 +3,8 @@
 
 The server is roscore, rosout and gzserver, unthrottled, with /clock at each step and no other
 subscriber; robots have the diff-drive plugin at 100 Hz. The bare loop, in its own process, steps
-the original URDF of the article (17 links) and does nothing else. Gazebo's speed relative to that
+the original URDF of the article (17 links) and does nothing else; 'merged' is the same with fixed
+links merged, as here. Gazebo's speed relative to that
 loop was measured on another machine; times the speed of the bare loop here, it estimates Gazebo's
 speed here.
 
@@ -33,7 +34,7 @@ WINDOW = 0.5  # [s, wall]
 ROUNDS = 10  # windows of each loop
 SETTLE = 1.0  # [s, simulated] until spawned robots stand, or drive at a steady speed
 GAZEBO_BARE = {20: 2150.0}  # steps/s of the bare loop on the machine of Gazebo, by robots
-LOOPS = ('bare', 'engine', 'world')
+LOOPS = ('bare', 'merged', 'engine', 'world')
 COLUMNS = (*LOOPS, 'server', 'read')
 PICTURE = OUTPUT / 'speed.png'
 
@@ -109,7 +110,7 @@ def _measure_case(case: Case, server: Server) -> None:
     with ExitStack() as stack:
         loops = {}
         for kind in LOOPS:
-            driving = case.bare_drives if kind == 'bare' else case.driving
+            driving = case.bare_drives if kind in ('bare', 'merged') else case.driving
             loops[kind] = stack.enter_context(Loop(kind, case.robots, driving))
         for loop in loops.values():
             loop.speed(0.0)  # wait until it is ready
@@ -135,7 +136,7 @@ def _speed_read(server: Server, robots: int) -> tuple[float, float]:
 def table(measured: Sequence[Case]) -> str:
     """Return the measured cases as a table."""
     rows = [
-        'robots        bare  engine   world  server    read  Gazebo  server/bare  '
+        'robots        bare  merged  engine   world  server    read  Gazebo  server/bare  '
         'server/Gazebo        read/Gazebo received'
     ]
     for case in measured:
@@ -153,6 +154,27 @@ def table(measured: Sequence[Case]) -> str:
         f'on another machine; from {first} robots on, measured with standing robots'
     )
     rows += [_real_time(case) for case in measured if case.robots in GAZEBO_BARE]
+    return '\n'.join(rows)
+
+
+def parts_table(measured: Sequence[Case]) -> str:
+    """Return where the time of a step goes, and the limit: PyBullet alone with links merged."""
+    rows = ['', 'us per step  engine  plugins, clock     ROS  messages   all  server/merged']
+    for case in measured:
+        took = {column: 1e6 / speed for column, speed in case.best.items() if speed}
+        last = took.get('read', took['server'])
+        parts = (
+            took['engine'],
+            took['world'] - took['engine'],
+            took['server'] - took['world'],
+            last - took['server'],
+            last,
+        )
+        row = ''.join(
+            f'{part:{width}.1f}' for part, width in zip(parts, (8, 16, 8, 10, 6), strict=True)
+        )
+        share = case.best['server'] / case.best['merged']
+        rows.append(f'{case.name:11}{row}{share:15.2f}')
     return '\n'.join(rows)
 
 
@@ -204,6 +226,7 @@ def main() -> int:
     """Print the table and save the plot; return the exit code."""
     measured = run_in_new_process(measure)
     print(table(measured))
+    print(parts_table(measured))
     print(sweep_table(sweep_all()))
     draw(measured, PICTURE)
     print(f'picture: {PICTURE}')

@@ -62,6 +62,15 @@ def test_table_calls_gazebos_speeds_estimated(speed, measured):
     assert 'not measured here but estimated' in speed.table(measured)
 
 
+def test_parts_of_a_step_add_up_and_have_the_limit_beside_them(speed):
+    case = speed.Case(1, True)
+    loops = {'merged': 5e4, 'engine': 2e5, 'world': 1e5, 'server': 5e4, 'read': 4e4}
+    for column, steps in loops.items():
+        case.record(column, steps)
+    row = speed.parts_table([case]).splitlines()[-1]
+    assert row.split() == ['1', 'driving', '5.0', '5.0', '10.0', '5.0', '25.0', '1.00']
+
+
 def test_the_slowest_command_of_each_kind_is_the_headline(speed):
     import sweep
 
