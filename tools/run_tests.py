@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Run every test of the project, cheapest first, and end with one line 'N passed, N failed'.
+"""Run every test of the project, and end with one line 'N passed, N failed'.
 
-Phases: lint (ruff, mypy, the documentation's site, catkin_lint, launch files) beside unit (pytest,
-no ROS master), engine (pytest, PyBullet without a window), each with processes side by side, and
-rostest (each test/rostest/*.test with its own master, several side by side). A phase without any
-test counts as failed. What failed is listed at the end with the command that repeats it.
+Phases, side by side: lint (ruff, mypy, the documentation's site, catkin_lint, launch files), unit
+(pytest, no ROS master) and engine (pytest, PyBullet without a window), each with a process for each
+processor, and rostest (each test/rostest/*.test with its own master, several side by side). A phase
+without any test counts as failed. What failed is listed at the end with the command that repeats
+it.
 """
 
 from __future__ import annotations
@@ -41,9 +42,7 @@ from results import (
 from rostests import choose, run_rostests
 
 SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
-AT_ONCE = ('lint', 'unit')  # phases
-# A file stays in one process. There is one more than processors, as some tests wait.
-PARALLEL = ['-n', str(1 + (os.cpu_count() or 1)), '--dist', 'loadfile']
+PARALLEL = ['-n', str(os.cpu_count() or 1), '--dist', 'loadfile']  # a file stays in one process
 NAVIGATION = ROOT / '.ws' / 'stamps' / 'navigation'  # when ./rosbots navigation has built it
 HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
@@ -72,6 +71,7 @@ def run_lint(_word: str) -> Count:
     """Check style, manifests and launch files."""
     checks = {
         'ruff': ['ruff', 'check', '--quiet', '--output-format', 'concise', '.'],
+        'ruff format': ['ruff', 'format', '--check', '--quiet', '.'],
         **type_checks(),
         'site': [sys.executable, 'tools/make_site.py', str(REPORTS / 'site')],
         # the folder of a clone may have any name
@@ -184,7 +184,7 @@ def run_changed(took: dict[str, float]) -> Count:
 
 
 def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
-    """Run phases in their order, lint beside unit; note the wall time of each [s]."""
+    """Run phases side by side, since all wait at times; note the wall time of each [s]."""
 
     def run(phase: str) -> Count:
         start = time.monotonic()
@@ -192,10 +192,8 @@ def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
         took[phase] = time.monotonic() - start
         return count
 
-    together = [phase for phase in AT_ONCE if phase in phases]
-    with ThreadPoolExecutor(len(AT_ONCE)) as pool:
-        total = sum(pool.map(run, together), Count())
-    return sum((run(phase) for phase in phases if phase not in together), total)
+    with ThreadPoolExecutor(len(PHASES)) as pool:
+        return sum(pool.map(run, phases), Count())
 
 
 def parse(argv: list[str] | None) -> argparse.Namespace:

@@ -31,11 +31,12 @@ def draw_seldom(path):
 def is_ready(node='/rviz'):
     """Return whether RViz is running with its window open and subscribed to TF."""
     _, readers, services = rospy.get_master().getSystemState()[2]
+    # not a crashed one
     return (
         any(topic == '/tf' and node in nodes for topic, nodes in readers)
         and any(service == READY_SERVICE for service, _ in services)
         and rosnode_ping(node, max_count=1, skip_cache=True)
-    )  # not a crashed one
+    )
 
 
 def start(open_terminal, close, limit):

@@ -116,7 +116,8 @@ class BadInputTest(SimulatorTest):
             (
                 LINK.format('base', ''),
                 '<link name="ghost"/>',
-                '<joint name="j" type="continuous"><parent link="base"/><child link="ghost"/></joint>',
+                '<joint name="j" type="continuous"><parent link="base"/><child '
+                'link="ghost"/></joint>',
             )
         )
         self.assertTrue(self.spawn('half', robot(massless), pose(x=5.0)).success)

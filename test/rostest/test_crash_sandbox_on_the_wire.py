@@ -8,11 +8,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import rospy
 import rostest
-from crashing_server import CRASHING, HANGING
+from crashing_server import HANGING
 from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 from raw_client import request_bytes, service_connection, vanish
 from server_process import OwnServerTest
 from simulator import BOX, DEADLINE, pose, wait_until
+from support.crashing import CRASHING
 
 TIMES = 10
 SPARE = 5  # files and threads of calls between nodes and master

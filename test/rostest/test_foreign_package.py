@@ -76,12 +76,13 @@ class ForeignPackageTest(unittest.TestCase):
             self.run_command('cmake', '--build', 'build', '--target', 'gazebo_plugin')
 
     def test_its_launch_files_find_ours(self):
+        # ROS's word for a metapackage
         for tool, package, path in (
             ('rospack', 'gazebo_dev', 'package.xml'),
             ('rospack', 'gazebo_plugins', 'test/test_worlds/gazebo_ros_range.world'),
             ('rospack', 'gazebo_ros', 'launch/empty_world.launch'),
             ('rosstack', 'gazebo_ros_pkgs', 'package.xml'),
-        ):  # ROS's word for a metapackage
+        ):
             found = self.run_command(tool, 'find', package).strip()
             self.assertTrue(os.path.isfile(os.path.join(found, path)), f'{found}/{path}')
 

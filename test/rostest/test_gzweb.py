@@ -326,6 +326,42 @@ class GzwebTest(unittest.TestCase):
         browser.choose('true map', True)
         browser.wait_until(lambda: '/readings/true map/grid' in browser.nodes)
 
+    def test_two_browsers_each_have_a_selection_of_their_own(self):
+        window = self.open('--port', '0')
+        with ServerProcess() as server, Browser(self.address(window)) as first:
+            server.wait_ready()
+            for number, name in enumerate(('ball', 'globe', 'marble')):
+                spawned = proxy('spawn_urdf_model', SpawnModel)(
+                    name, BALL.replace('"ball"', f'"{name}"'), '', pose(2.0 * number, z=0.5), ''
+                )
+                self.assertTrue(spawned.success, spawned.status_message)
+            with Browser(first.address) as second:
+                for browser, name in ((first, 'ball'), (second, 'globe')):
+                    browser.click(name)
+                    browser.wait_until(
+                        lambda browser=browser, name=name: f'<b>{name}</b>' in browser.tables()
+                    )
+                self.assertEqual(self.selected(first), {'/models/ball/body/selected'})
+                second.choose('Mass [kg]', 2.5)
+                second.click('Set mass')
+                mass = proxy('get_link_properties', GetLinkProperties)
+                second.wait_until(lambda: mass('globe::body').mass == 2.5)
+                self.assertEqual(mass('ball::body').mass, 1.0)
+                first.press('delete')
+                second.wait_until(lambda: '/models/ball/body' not in second.nodes)
+                first.wait_until(lambda: self.selected(first) == set())
+                self.assertEqual(self.selected(second), {'/models/globe/body/selected'})
+                second.click('Pause')
+                first.wait_until(lambda: first.control('Play'))  # time is that of all
+            first.click('marble')
+            first.wait_until(lambda: self.selected(first) == {'/models/marble/body/selected'})
+            first.press('delete')
+            first.wait_until(lambda: '/models/marble/body' not in first.nodes)
+            self.assertIn('/models/globe/body', first.nodes)
+
+    def selected(self, browser):
+        return {name for name in browser.nodes if name.endswith('/selected')}
+
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')
         port = re.search(r':(\d+)/', self.address(first))[1]

@@ -25,6 +25,7 @@ from gazebo_msgs.msg import ContactsState, ContactState
 from gazebo_msgs.srv import DeleteLight, SpawnModel
 from geometry_msgs.msg import Twist, Vector3
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 from sensor_msgs.msg import Imu
 from server_process import ServerProcess
 from simulator import pose, proxy, wait_until
@@ -67,6 +68,17 @@ CLOSE = "document.querySelectorAll('.mantine-Notification-closeButton').forEach(
 # The texts of a list, some of which are not on the page, notifications and open lists included.
 MISSING = """const shown = document.body.textContent.replace(/\\s/g, ' ');
 return arguments[0].filter(text => !shown.includes(text.replace(/\\s/g, ' ')))"""
+
+
+CLICK = """const wanted = arguments[1].replace(/\\s/g, ' ');
+const found = [...document.querySelectorAll(arguments[0])].find(
+  one => one.offsetParent && one.textContent.replace(/\\s/g, ' ') === wanted);
+if (found) found.click();
+return Boolean(found)"""
+SEND_FILE = """const field = document.querySelector('input[type=file]'), files = new DataTransfer();
+files.items.add(new File([new Uint8Array(arguments[1])], arguments[0]));
+field.files = files.files;
+field.dispatchEvent(new Event('change', {bubbles: true}))"""
 
 
 class HostileNamesTest(unittest.TestCase):
@@ -138,8 +150,8 @@ class HostileNamesTest(unittest.TestCase):
             ),
             'the page',
         )
-        self.hand.press('escape')  # select nothing
-        self.wait(lambda: not self.rows('\u2514'), 'no link listed')
+        self.driver.find_element(By.TAG_NAME, 'body').send_keys(Keys.ESCAPE)  # select nothing
+        self.wait(lambda: self.driver.execute_script(MISSING, ['\u2514 ']), 'no link listed')
 
     def tearDown(self):
         self.assertEqual(self.driver.execute_script('return foreign'), [])
@@ -159,11 +171,41 @@ class HostileNamesTest(unittest.TestCase):
             and props['label'].startswith(begin)
         }
 
+    def click(self, selector, text):
+        """Click on the element with a text, when the page shows it."""
+        self.wait(lambda: self.driver.execute_script(CLICK, selector, text), f'{text} on the page')
+
+    def choose(self, label, text):
+        """Choose from a list of the page."""
+        self.toggle(self.field(label))
+        self.click('[role=option]', text)
+
+    def toggle(self, field):
+        """Open or close the list of a field, whatever notice or open list is in front of it."""
+        self.driver.execute_script('arguments[0].click()', field)
+
+    def field(self, label):
+        """Return the field of the page with a label, when it can be seen."""
+        fields = []
+
+        def found():
+            fields[:] = [
+                one
+                for one in self.driver.find_elements(
+                    By.XPATH, f'//label[normalize-space()="{label}"]/following::input[1]'
+                )
+                if one.is_displayed()
+            ]
+            return fields
+
+        self.wait(found, label)
+        return fields[0]
+
     def select(self, model, link=None):
         """Click on a model in the list, and on one of its links."""
-        self.press(plain(model))
+        self.click('button', plain(model))
         if link is not None:
-            self.press(f'\u2514 {plain(link)}')
+            self.click('button', f'\u2514 {plain(link)}')
 
     def press(self, label):
         """Press a button when it can be seen; hidden ones may have had that label."""
@@ -197,25 +239,12 @@ class HostileNamesTest(unittest.TestCase):
         """Wait until a list has all names, and that they are shown when it is open."""
         names = [plain(name) for name in names]
         self.wait(lambda: set(names) <= set(self.options(label)), f'the list of {label}')
-        fields = []
-        self.wait(
-            lambda: (
-                fields.extend(
-                    one
-                    for one in self.driver.find_elements(
-                        By.XPATH, f'//label[normalize-space()="{label}"]/following::input[1]'
-                    )
-                    if one.is_displayed()
-                )
-                or fields
-            ),
-            label,
-        )
-        fields[0].click()
+        field = self.field(label)
+        self.toggle(field)
         try:
             self.wait_shown(*names, said=str)
         finally:
-            fields[0].click()
+            self.toggle(field)
 
     def options(self, label):
         """Return what can be chosen in a field."""
@@ -254,16 +283,17 @@ class HostileNamesTest(unittest.TestCase):
             )
 
     def test_what_is_edited(self):
-        self.open_tab('Edit')
         for model, of_link in MODELS.items():
+            self.open_tab('Models')
             self.select(model, of_link)
+            self.open_tab('Edit')
             self.wait_shown(model, f', link {of_link}')
 
     def test_joints_that_are_moved(self):
         self.open_tab('Drive')
         for name, texts in self.arms.items():
             self.wait(lambda name=name: plain(name) in self.options('Of'), name)
-            self.hand.choose('Of', plain(name))
+            self.choose('Of', plain(name))
             self.wait_shown(*(f'{text} [rad]' for text in texts))
 
     def test_topics_that_are_commanded(self):
@@ -276,7 +306,7 @@ class HostileNamesTest(unittest.TestCase):
         ]
         self.wait_offered('Topic', drive)
         self.wait(lambda: CONTROLLERS in self.options('Of'), 'topics of joints')
-        self.hand.choose('Of', CONTROLLERS)
+        self.choose('Of', CONTROLLERS)
         self.wait_shown(*joints)
         for one in listening:
             one.unregister()
@@ -343,6 +373,7 @@ class HostileNamesTest(unittest.TestCase):
             proxy('delete_light', DeleteLight)(text)
 
     def test_files_that_are_refused(self):
+        self.open_tab('Edit')
         for group in GROUPS:
             name = f'{"".join(group)}.urdf'
             self.upload(name, b'\0\xff', f"'{name}' is not text; upload a URDF, xacro or SDF")
@@ -359,7 +390,7 @@ class HostileNamesTest(unittest.TestCase):
         def is_shown():
             nonlocal tries
             if tries % 200 == 0:  # again: the page says nothing if it has just said too much
-                self.hand.upload(UPLOAD, name, content)
+                self.driver.execute_script(SEND_FILE, name, list(content))
             tries += 1
             return not self.driver.execute_script(MISSING, [plain(sentence)])
 

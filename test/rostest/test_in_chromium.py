@@ -294,6 +294,25 @@ class ChromiumTest(unittest.TestCase):
             [one for one in asked if not re.match(f'(http|ws)://{host}/|data:|blob:', one)], []
         )
 
+    def test_two_pages_have_each_a_selection_and_a_tab_of_their_own(self):
+        box = proxy('spawn_urdf_model', SpawnModel)('box', BOX, '', pose(3.0), '')
+        self.assertTrue(box.success, box.status_message)
+        with chromium(DESKTOP) as driver:
+            other = Page(driver, self.address)
+            for page, name in ((self.page, 'rosbots'), (other, 'box')):
+                page.open_tab('Models')
+                page.click(name)
+                page.wait_for_text(f'{name}\nPosition [m]')
+            other.open_tab('Edit')
+            self.assertIn('rosbots\nPosition [m]', self.page.text())
+            self.assertNotIn('Duplicate', self.page.text())
+            other.press(Keys.DELETE)
+            wait_until(lambda: 'box' not in models(), 'a deletion', SLOW)
+            self.assertIn('rosbots', models())
+            self.assertEqual(faults(driver), [])
+        self.page.press(Keys.DELETE)
+        wait_until(lambda: 'rosbots' not in models(), 'a deletion', SLOW)
+
     def wait_for_the_robot(self, page):
         reference = np.asarray(Image.open(REFERENCE), float)
         wait_until(

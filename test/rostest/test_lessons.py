@@ -56,7 +56,10 @@ class Reader:
         if isinstance(step, File):
             step.write(self.folder)
         elif isinstance(step, Shown):
-            self._see(step, self._terminals[0 if step.in_first else -1][1])
+            _, terminal = self._terminals[0 if step.in_first else -1]
+            for key in step.keys:
+                terminal.type(key)
+            self._see(step, terminal)
         elif step.goes_on:
             self._open(step)
         else:

@@ -174,7 +174,8 @@ OUTCOMES = [
         'set_link_properties',
         {'link_name': 'box::body', 'mass': 1.0, 'com': {'position': {'y': -1e308}}},
         False,
-        "SetLinkProperties: Failure - com.position of link 'box::body' is -1e+308 m from its frame; "
+        "SetLinkProperties: Failure - com.position of link 'box::body' is -1e+308 m from its "
+        'frame; '
         'at most 1e+07 m are accepted',
     ),
     (

@@ -78,15 +78,11 @@ class PipInstallTest(unittest.TestCase):
         checked = self.run_there('-m', 'pip', '--disable-pip-version-check', 'check')
         self.assertEqual(checked.returncode, 0, checked.stdout)
         modules = [
-            f'rosbots_description.{path.relative_to(ROOT / "src" / "rosbots_description")}'.removesuffix(
-                '.py'
-            )
-            .removesuffix('/__init__')
-            .replace('/', '.')
+            '.'.join(path.relative_to(ROOT / 'src').with_suffix('').parts).removesuffix('.__init__')
             for folder in ('sim', 'gym')
             for path in (ROOT / 'src' / 'rosbots_description' / folder).rglob('*.py')
-            if path.stem != 'window'
-        ]  # which needs [web]
+            if path.stem != 'window'  # which needs [web]
+        ]
         imported = self.run_there(
             '-c',
             'import importlib, sys\n'

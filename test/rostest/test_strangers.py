@@ -121,7 +121,7 @@ class StrangersTest(unittest.TestCase):
         if selected:  # else the simulator has no such names
             self.browser.click(selected[0])
             self.browser.wait_until(lambda: MARK in self.browser.tables(), SLOW)
-            self.assertNotIn('<iframe', self.browser.tables() + ''.join(self.browser._html()))
+            self.assertNotIn('<iframe', self.browser.tables() + ''.join(self.browser.contents()))
         else:
             self.assertIn(MARK, said)
 

@@ -114,9 +114,10 @@ def furnished_world() -> Iterator[World]:
         spec, _ = load_sdf(NESTED, 'outer', find_model=lambda _: None)
         world.spawn(spec, 'outer', Pose((0.0, 10.0, 1.0)))
         static = '<gazebo><static>true</static></gazebo>'
+        # also when the ground is deleted
         world.spawn(
             urdf_spec(box_urdf('2 2 1', 1.0, static)), 'pedestal', Pose((*PLACE.position[:2], 0.5))
-        )  # also when the ground is deleted
+        )
         world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), BYSTANDER, PLACE)
         world.lights['lamp'] = LightSpec('lamp')
         yield world

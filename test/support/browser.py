@@ -34,15 +34,19 @@ class Browser:
     """Keeps all messages by type, and what is known of each node and control."""
 
     def __init__(self, address, headers=None):
+        self.address = address
         self._connection = connect(
             address.replace('http', 'ws', 1),
             subprotocols=[f'viser-v{viser.__version__}'],
             additional_headers=headers,
             max_size=None,
+            open_timeout=PATIENCE,
+            ping_interval=None,  # else a ping while it closes may be logged as an error
         )
         self.messages = []
         self.windows = 0  # of messages: what comes at once
         self.nodes = {}  # of the scene: name -> [type, position, wxyz]
+        self.owners = {}  # of nodes: '' for those of all browsers
         self.renders = 0  # how many pictures were given
         self.keys = {}  # what is bound to each
         self.idle_keys = set()  # those of them that do nothing now
@@ -97,7 +101,8 @@ class Browser:
         self.send({'type': 'GuiButtonHoldMessage', 'uuid': self.control(label), 'frequency': 10.0})
 
     def press(self, key):
-        """Press a key."""
+        """Press a key, when it does something."""
+        self.wait_until(lambda: key in self.keys)
         self.send({'type': 'CommandTriggerMessage', 'uuid': self.keys[key]})
 
     def choose(self, label, value):
@@ -128,23 +133,20 @@ class Browser:
 
     def grab(self, node):
         """Begin to drag a handle of the scene."""
-        self.send({'type': 'TransformControlsDragStartMessage', 'name': node, 'owner': ''})
+        self._send_of_handle('TransformControlsDragStartMessage', node)
 
     def drag(self, node, position):
         """Drag it to a position."""
-        self.send(
-            {
-                'type': 'TransformControlsUpdateMessage',
-                'name': node,
-                'owner': '',
-                'wxyz': [1.0, 0.0, 0.0, 0.0],
-                'position': position,
-            }
+        self._send_of_handle(
+            'TransformControlsUpdateMessage', node, wxyz=[1.0, 0.0, 0.0, 0.0], position=position
         )
 
     def let_go(self, node):
         """Let it go."""
-        self.send({'type': 'TransformControlsDragEndMessage', 'name': node, 'owner': ''})
+        self._send_of_handle('TransformControlsDragEndMessage', node)
+
+    def _send_of_handle(self, kind, node, **more):
+        self.send({'type': kind, 'name': node, 'owner': self.owners.get(node, ''), **more})
 
     def click_ray(self, origin, direction):
         """Click where a ray goes."""
@@ -235,15 +237,18 @@ class Browser:
         """Return the texts that are shown, with spaces between what a table has."""
         return [
             html.unescape(re.sub('<[^>]*>', ' ', content.replace('<br>', '\n'))).strip()
-            for content in self._html()
+            for content in self.contents()
             if content.startswith(WORDS)
         ]
 
     def tables(self):
         """Return the HTML that is shown of what is selected, in one."""
-        return ''.join(content for content in self._html() if not content.startswith((WORDS, *OWN)))
+        return ''.join(
+            content for content in self.contents() if not content.startswith((WORDS, *OWN))
+        )
 
-    def _html(self):
+    def contents(self):
+        """Return the HTML of what is shown, as it was sent."""
         return [
             props['content']
             for kind, props in self.controls.values()
@@ -261,16 +266,6 @@ class Browser:
             self._enable(message['uuid'], message['props'])
         elif kind == 'CommandUpdateMessage':
             self._enable(message['uuid'], message['updates'])
-        elif kind == 'RemoveSceneNodeMessage':
-            self.nodes = {
-                node: state
-                for node, state in self.nodes.items()
-                if node != name and not node.startswith(f'{name}/')
-            }
-        elif kind == 'SetPositionMessage' and name in self.nodes:
-            self.nodes[name][1] = message['position']
-        elif kind == 'SetOrientationMessage' and name in self.nodes:
-            self.nodes[name][2] = message['wxyz']
         elif kind == 'GuiUpdateMessage' and message['uuid'] in self.controls:
             self.controls[message['uuid']][1].update(message['updates'])
         elif kind == 'GuiRemoveMessage':
@@ -281,8 +276,25 @@ class Browser:
                 kind,
                 message['props'] | {'value': message.get('value')},
             ]
-        elif name is not None and 'props' in message and kind != 'SceneNodeUpdateMessage':
+        elif name is not None and not message.get('virtual'):  # else it is there for what is below
+            self._take_node(kind, name, message)
+
+    def _take_node(self, kind, name, message):
+        owner = message.get('owner', '')
+        is_shown = self.owners.get(name) == owner  # not hidden by that of another owner
+        if kind == 'RemoveSceneNodeMessage':
+            self.nodes = {
+                node: state
+                for node, state in self.nodes.items()
+                if self.owners[node] != owner or (node != name and not node.startswith(f'{name}/'))
+            }
+        elif kind == 'SetPositionMessage' and name in self.nodes and is_shown:
+            self.nodes[name][1] = message['position']
+        elif kind == 'SetOrientationMessage' and name in self.nodes and is_shown:
+            self.nodes[name][2] = message['wxyz']
+        elif 'props' in message and kind != 'SceneNodeUpdateMessage':
             self.nodes[name] = [kind, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
+            self.owners[name] = owner
 
     def _enable(self, uuid, told):
         if 'disabled' in told:

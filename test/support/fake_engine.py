@@ -19,7 +19,7 @@ class FakeEngine(PhysicsEngine):
     """
 
     needs_rebuild = False
-    placements = 0
+    placements = advances = 0
 
     def __init__(self, physics):
         self.steps = []  # number of steps of each call of `step`
@@ -62,6 +62,7 @@ class FakeEngine(PhysicsEngine):
 
     def step(self, steps):
         self.steps.append(steps)
+        self.advances += 1
         for state in [state for body in self.bodies for state in body.state.values()]:
             for _ in range(steps):
                 state[0] += state[1] * self.step_size

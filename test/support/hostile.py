@@ -238,7 +238,8 @@ def many_surfaces_that_stand(_: Path) -> str:
         '<static>1</static><link name="l">'
         + ''.join(
             f'<collision name="c{i}"><geometry><sphere><radius>0.01</radius></sphere></geometry>'
-            f'<surface><friction><ode><mu>{0.001 * i:.3f}</mu></ode></friction></surface></collision>'
+            f'<surface><friction><ode><mu>{0.001 * i:.3f}</mu></ode></friction></surface>'
+            '</collision>'
             for i in range(140)
         )
         + '</link>'

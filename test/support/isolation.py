@@ -48,16 +48,16 @@ class Child:
         Raises:
             AssertionError: the call raised, did not return, printed, or ended the child.
         """
-        self._pipe.send((method, arguments))
-        if not self._pipe.poll(PATIENCE):
-            raise AssertionError(f'{method} did not end within {PATIENCE:g} s')
         try:
+            self._pipe.send((method, arguments))
+            if not self._pipe.poll(PATIENCE):
+                raise AssertionError(f'{method} did not end within {PATIENCE:g} s')
             done, result = self._pipe.recv()
-        except EOFError:
+        except (EOFError, ConnectionError):
             self._process.join()
             number = -self._process.exitcode
             name = signal.Signals(number).name if number > 0 else f'exit code {-number}'
-            raise AssertionError(f'{method} ended the process: {name}') from None
+            raise AssertionError(f'{method} ended the process: {name}\n{self.printed()}') from None
         assert done, f'{method} raised:\n{result}'
         printed = self.printed()
         assert not printed, f'{method} printed: {printed}'

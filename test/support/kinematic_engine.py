@@ -98,7 +98,7 @@ def _moved(joint, position):
 class KinematicEngine:
     """A `PhysicsEngine` for worlds that are driven through; forces have no effect."""
 
-    needs_rebuild, placements = False, 0
+    needs_rebuild, placements, advances = False, 0, 0
 
     def __init__(self, physics):
         self.bodies = []
@@ -111,6 +111,7 @@ class KinematicEngine:
         self.bodies.clear()
 
     def step(self, steps):
+        self.advances += 1
         for body in self.bodies:
             for _ in range(steps):
                 body.step(self.dt)
@@ -145,6 +146,7 @@ class KinematicEngine:
         return copy.deepcopy([vars(body) for body in self.bodies])
 
     def restore(self, snapshot):
+        self.placements += 1
         for body, state in zip(self.bodies, copy.deepcopy(snapshot), strict=True):
             vars(body).update(state)
 

@@ -10,7 +10,8 @@ The end of the paragraph before a fenced block says what the block is:
 
 A block of text right after one of bash is what that prints. After "... in the first terminal:" or
 "... in the last terminal:" it is what the first or the last one of the programs that go on has
-printed. Each of its lines is one of the output, and "…" stands for anything.
+printed, once the keys are pressed there that the paragraph names: "Press `q` and `i`; this ...".
+Each of its lines is one of the output, and "…" stands for anything.
 """
 
 import re
@@ -26,6 +27,7 @@ SAVED = re.compile(r'Save this as `([\w./]+)`:$')
 ADDED = re.compile(r'Add this to `([\w./]+)`, above its last line:$')
 GOES_ON = re.compile(r'\bin a terminal of its own:$', re.I)
 IN_TERMINAL = re.compile(r'\bin the (first|last) terminal:$', re.I)
+PRESSED = re.compile(r'\bPress (`.`(?:(?:, | and )`.`)*)[ ;]')
 FAILS = re.compile(r'\bfails:$')
 ENDLESS = ('roslaunch ', 'roscore')
 COLOURS = re.compile(r'\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07')
@@ -68,11 +70,15 @@ class Commands:
 
 @dataclass(frozen=True)
 class Shown:
-    """Lines that appear in the terminal of the first or of the last program that goes on."""
+    """Lines that appear in the terminal of the first or of the last program that goes on.
+
+    `keys` are pressed there before.
+    """
 
     expected: tuple[str, ...]
     line: int
     in_first: bool
+    keys: str = ''
 
 
 def missing(expected: Iterable[str], output: str) -> list[str]:
@@ -115,7 +121,9 @@ def read_lesson(path: Path) -> list[File | Commands | Shown]:
             if not expected:
                 raise LessonError(f'{where}: an output without lines')
             if terminal := IN_TERMINAL.search(sentence):
-                steps.append(Shown(expected, line, terminal[1] == 'first'))
+                pressed = PRESSED.search(sentence)
+                keys = ''.join(re.findall('`(.)`', pressed[1])) if pressed else ''
+                steps.append(Shown(expected, line, terminal[1] == 'first', keys))
             elif isinstance(before, Commands) and not before.expected and not sentence:
                 steps[-1] = replace(before, expected=expected)
             else:

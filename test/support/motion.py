@@ -20,6 +20,7 @@ ROBOTS = ('article', 'burger', 'box4', 'skid4', 'planar', 'tricycle')
 MOTORED = ('article', 'burger', 'box4', 'skid4', 'tricycle')  # driven by motors in joints
 REST = 3.0  # [s] after the end of a command
 STEADY = ('v', 'lateral', 'w', 'odom_vx', 'odom_wz')  # steady speeds, beside those of wheels
+SUMS = ('end_yaw', 'yaw')  # what adds up from them, beside places
 STEADY_FROM = 1.0  # [s] after the start of a command
 REACHED = 0.9  # share of the steady speed
 STOPPED = 0.05  # share of the steady speed
@@ -27,7 +28,8 @@ ROW = 20  # steps between the rows of a recording
 IDLE = 20.0  # [s]
 
 # Tolerances relative to Gazebo's values, with lower bounds (floors). A steady speed must be within
-# SPEED_SHARE of the interval between Gazebo's value and that of mechanics (converged.py).
+# SPEED_SHARE of the interval between Gazebo's value and that of mechanics (converged.py); so are
+# headings and places, to which it adds up.
 SPEED_SHARE = 0.03  # of a steady speed, an angle turned, a wheel speed
 PLACE_SHARE = 0.04  # of the displacement
 TIME_SHARE, TIME_FLOOR = 0.05, 0.03  # of a rise or stopping time; [s], more than one row
@@ -187,7 +189,8 @@ def compare_drive(
     found = []
 
     def add(quantity: str, unit: str, *values, least: bool = False) -> None:
-        predicted = solved.get(quantity) if quantity in (*STEADY, *data.get('wheels', ())) else None
+        between = quantity in (*STEADY, *SUMS, *data.get('wheels', ()))
+        predicted = solved.get(quantity) if between else None
         found.append(Difference(scene, quantity, unit, *values, least, mechanics=predicted))
 
     for keys in (('end_x', 'end_y'), ('x', 'y'), ('odom_x', 'odom_y')):
@@ -196,7 +199,8 @@ def compare_drive(
             # The distance between both positions, as one number.
             reach = max(PLACE_SHARE * math.hypot(*theirs), floor)
             quantity = keys[0].removesuffix('_x').replace('x', 'rest') + ' place'
-            add(quantity, 'm', 0.0, math.dist(theirs, own), reach)
+            predicted = [solved.get(key, gazebo[key]) for key in keys]
+            add(quantity, 'm', 0.0, _beside(own, theirs, predicted), reach)
             for key in keys:
                 del gazebo[key]
     for key, theirs in gazebo.items():
@@ -243,10 +247,11 @@ def _compare_paths(
 ) -> Iterator[Difference]:
     """Yield the largest differences of path and heading."""
     apart = turned = 0.0
-    for time, x, y, yaw in data['trace']:
+    solved = mechanics().get(scene, {}).get('trace', data['trace'])
+    for (time, x, y, yaw), (_, *place, heading) in zip(data['trace'], solved, strict=True):
         sample = samples[round(1000 * time)]
-        apart = max(apart, math.dist((x, y), (sample.x, sample.y)))
-        turned = max(turned, abs(yaw - sample.yaw))
+        apart = max(apart, _beside((sample.x, sample.y), (x, y), place))
+        turned = max(turned, min(yaw, heading) - sample.yaw, sample.yaw - max(yaw, heading))
     reach = max(math.hypot(x, y) for _, x, y, _ in data['trace'])
     most = max(abs(yaw) for *_, yaw in data['trace'])
     turns = bool(data['command'][2])
@@ -254,6 +259,14 @@ def _compare_paths(
     yield Difference(scene, 'path', 'm', 0.0, apart, max(PLACE_SHARE * reach, floor))
     if turns:  # otherwise the final yaw is compared
         yield Difference(scene, 'heading', 'rad', 0.0, turned, tolerance)
+
+
+def _beside(place: Sequence[float], one: Sequence[float], other: Sequence[float]) -> float:
+    """Return the distance of a place from the way between two others [m]; all x and y."""
+    (px, py), (x, y), (dx, dy) = place, one, (b - a for a, b in zip(one, other, strict=True))
+    share = ((px - x) * dx + (py - y) * dy) / (dx * dx + dy * dy or 1.0)
+    share = max(0.0, min(1.0, share))
+    return math.hypot(px - x - share * dx, py - y - share * dy)
 
 
 def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:

@@ -44,12 +44,16 @@ class FakeSimulator:
         self.maps, self.goals = FakeMaps(), FakeGoals()
         self.names = []  # of models on the model path
         self.missing = []  # what models are spawned without
+        self.known_faults = []  # of its world
 
     def open(self, change, motion):
         self.change, self.motion = change, motion
 
     def close(self):
         self.change = self.motion = None
+
+    def faults(self):
+        return tuple(self.known_faults)
 
     def state(self, model, link, _patience=None):
         self.told.append(('state', model, link))
@@ -212,6 +216,11 @@ class FakeSignals:
     def read(self):
         samples, self.samples = self.samples, {}
         return {curve: samples.get(curve, []) for curve in self.open_curves}
+
+
+def selection(page):
+    """Return what is selected in the browser that connected first."""
+    return next(iter(page.browsers.values())).selection
 
 
 def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):

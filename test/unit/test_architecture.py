@@ -15,6 +15,7 @@ PACKAGE = SOURCE / 'rosbots_description'
 MESSAGES = re.compile(r'\w+_(msgs|srvs)')
 
 # Permitted imports between folders; imports for type checking count too.
+# fmt: off
 ARROWS = {
     'sim/core': '',
     'sim/description': 'sim/core',
@@ -26,10 +27,12 @@ ARROWS = {
     'sim/formats/xml': 'sim/core sim/description sim/plugin_registry',
     'sim/formats/ogre': 'sim/core sim/description sim/resources',
     'sim/formats/kinematics': 'sim/core sim/description sim/formats/xml',
-    'sim/formats/urdf': 'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/xacro_module '
-    'sim/formats/xml sim/formats/kinematics sim/formats/ogre',
-    'sim/formats/sdf': 'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
-    'sim/formats/kinematics sim/formats/ogre',
+    'sim/formats/urdf':
+        'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/xacro_module '
+        'sim/formats/xml sim/formats/kinematics sim/formats/ogre',
+    'sim/formats/sdf':
+        'sim/core sim/description sim/resources sim/meshes sim/plugin_registry sim/formats/xml '
+        'sim/formats/kinematics sim/formats/ogre',
     'sim/physics': 'sim/core sim/description sim/meshes',
     'sim/physics/bullet': 'sim/core sim/description sim/meshes sim/physics',
     'sim/runtime': 'sim/core sim/description sim/physics sim/plugin_registry',
@@ -37,51 +40,69 @@ ARROWS = {
     'sim/plugins/drive': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/force': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/plugins/state': 'sim/core sim/runtime sim/plugin_registry sim/plugins',
-    'sim/controllers': 'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
+    'sim/controllers':
+        'sim/core sim/description sim/runtime sim/plugin_registry sim/plugins',
     'sim/controllers/drive': 'sim/core sim/description sim/runtime sim/controllers',
-    'sim/rendering': 'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
+    'sim/rendering':
+        'sim/core sim/description sim/resources sim/meshes sim/runtime sim/rendering/gl',
     'sim/rendering/gl': '',
     'sim/placement': 'sim/core sim/description sim/meshes sim/runtime',
     'sim/mapping': 'sim/core sim/description sim/meshes sim/resources sim/runtime',
-    'sim/sensors': 'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
-    'sim/rendering',
-    'sim/public': 'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
-    'sim/plugins sim/controllers sim/sensors',
+    'sim/sensors':
+        'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
+        'sim/rendering',
+    'sim/public':
+        'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
+        'sim/plugins sim/controllers sim/sensors',
     'sim': '',
     'ros_api': '',
     'ros_api/transport': 'sim/core',
     'ros_api/messages': 'sim/core sim/description sim/runtime sim/sensors',
-    'ros_api/server': 'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
-    'ros_api/services': 'sim/core sim/description sim/resources sim/formats sim/physics sim/placement sim/runtime '
-    'ros_api/server ros_api/messages ros_api/transport',
-    'ros_api/topics': 'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
-    'ros_api/reconfigure': 'sim/plugins sim/controllers sim/sensors '
-    'ros_api/server ros_api/transport ros_api/services',
-    'ros_api/adapters': 'sim/core sim/formats sim/runtime sim/plugins sim/controllers sim/sensors '
-    'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
-    'ros_api/adapters/controllers': 'sim/controllers sim/core sim/formats sim/runtime ros_api/adapters ros_api/messages '
-    'ros_api/reconfigure ros_api/server ros_api/transport',
-    'ros_api/views': 'sim/core sim/description sim/runtime sim/rendering '
-    'ros_api/server ros_api/messages ros_api/transport',
-    'ros_api/clients': 'sim/core sim/description sim/public sim/resources sim/rendering sim/runtime '
-    'ros_api/messages ros_api/transport ros_api/views batch',
+    'ros_api/server':
+        'sim/core sim/resources sim/physics sim/runtime ros_api/transport ros_api/messages',
+    'ros_api/services':
+        'sim/core sim/description sim/resources sim/formats sim/physics sim/placement sim/runtime '
+        'ros_api/server ros_api/messages ros_api/transport',
+    'ros_api/topics':
+        'sim/core sim/runtime ros_api/server ros_api/messages ros_api/transport ros_api/services',
+    'ros_api/reconfigure':
+        'sim/plugins sim/controllers sim/sensors '
+        'ros_api/server ros_api/transport ros_api/services',
+    'ros_api/adapters':
+        'sim/core sim/formats sim/runtime sim/plugins sim/controllers sim/sensors '
+        'ros_api/server ros_api/messages ros_api/transport ros_api/reconfigure',
+    'ros_api/adapters/controllers':
+        'sim/controllers sim/core sim/formats sim/runtime ros_api/adapters ros_api/messages '
+        'ros_api/reconfigure ros_api/server ros_api/transport',
+    'ros_api/views':
+        'sim/core sim/description sim/runtime sim/rendering '
+        'ros_api/server ros_api/messages ros_api/transport',
+    'ros_api/clients':
+        'sim/core sim/description sim/public sim/resources sim/rendering sim/runtime '
+        'ros_api/messages ros_api/transport ros_api/views batch',
     'ros_api/controller_programs': 'ros_api/clients ros_api/transport',
-    'ros_api/window': 'sim/core sim/description sim/resources sim/formats '
-    'ros_api/messages ros_api/transport ros_api/clients',
-    'ros_api/node': 'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
-    'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
-    'ros_api/reconfigure ros_api/views',
+    'ros_api/window':
+        'sim/core sim/description sim/resources sim/formats '
+        'ros_api/messages ros_api/transport ros_api/clients',
+    'ros_api/node':
+        'sim/core sim/description sim/resources sim/meshes sim/formats sim/physics sim/runtime '
+        'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
+        'ros_api/reconfigure ros_api/views',
     'batch': 'sim sim/core sim/plugins',
     'web': 'sim/core sim/description sim/meshes sim/rendering',
-    'viewer': 'sim sim/controllers sim/core sim/description sim/formats sim/placement sim/plugins '
-    'sim/resources sim/runtime sim/sensors web',
-    'gym': 'sim sim/controllers sim/core sim/description sim/plugins sim/rendering sim/runtime '
-    'sim/sensors viewer',
+    'viewer':
+        'sim sim/controllers sim/core sim/description sim/formats sim/physics sim/placement '
+        'sim/plugins sim/resources sim/runtime sim/sensors web',
+    'gym':
+        'sim sim/controllers sim/core sim/description sim/plugins sim/rendering sim/runtime '
+        'sim/sensors viewer',
     'gym/tasks': 'gym sim sim/description sim/rendering',
-    'cli': 'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '
-    'ros_api/window ros_api/node web viewer batch',
+    'cli':
+        'sim/core sim/xacro_module ros_api/transport ros_api/clients ros_api/controller_programs '
+        'ros_api/window ros_api/node web viewer batch',
     '': '',
 }
+# fmt: on
 # Upwards, but only within a function, when it is called: World.show and World.recording.
 LATE = {('sim/public', 'viewer')}
 

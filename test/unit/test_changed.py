@@ -22,10 +22,11 @@ def changed():
     ('name', 'case'),
     [
         ('web/gizmo.py', 'test/unit/web/test_page.py'),
+        # a plugin, imported when used
         (
             'sim/sensors/imu.py',
             'test/engine/sim/sensors/test_imu.py',
-        ),  # a plugin, imported when used
+        ),
         ('sim/physics/bullet/contact_stiffness.py', 'test/engine/gym/test_parallel.py'),
         ('ros_api/messages/fields.py', 'test/unit/ros_api/server/test_static_frames.py'),
     ],

@@ -48,16 +48,33 @@ def test_the_readme_names_the_tutorial():
     assert '"ROS truck trolley, part 4: creating a robot simulation in rviz and gazebo"' in text
 
 
-def test_the_architecture_names_files_that_exist():
-    text = (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8')
+@pytest.mark.parametrize('page', ['architecture', 'inside_the_server'])
+def test_a_page_about_the_code_names_files_that_exist(page):
+    text = (ROOT / 'doc' / f'{page}.md').read_text(encoding='utf-8')
     package = ROOT / 'src' / 'rosbots_description'
     names = set(re.findall(r'`([\w./]+\.py)`', text)) - {'__init__.py'}
-    assert len(names) > 20
+    assert len(names) > 15
     assert not [
         name
         for name in sorted(names)
         if not (ROOT / name).is_file() and not list(package.glob(f'**/{name}'))
     ]
+
+
+def test_the_architecture_names_classes_and_methods_that_exist():
+    text = (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8')
+    code = '\n'.join(
+        path.read_text(encoding='utf-8')
+        for path in (ROOT / 'src' / 'rosbots_description').rglob('*.py')
+    )
+    defined = set(re.findall(r'^ *(?:class|def) (\w+)', code, re.M)) | {'Twist'}  # of ROS
+    named = set(re.findall(r'`([A-Z]\w+(?:\.\w+)?)`', text))
+    assert len(named) > 10
+    assert not {part for name in named for part in name.split('.')} - defined
+
+
+def test_the_architecture_is_one_page():
+    assert (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8').count('\n') < 90
 
 
 def test_the_architecture_names_rooms_that_exist():

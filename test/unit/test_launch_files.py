@@ -126,9 +126,9 @@ def test_rviz_shows_the_robot(load):
 
 
 @pytest.mark.parametrize('path', FILES, ids=name)
-def test_rviz_is_started_only_where_there_is_a_display(path):
+def test_windows_are_opened_only_where_there_is_a_display(path):
     for node in ElementTree.parse(path).iter('node'):
-        if node.get('type') == 'rviz':
+        if node.get('type') in ('rviz', 'joint_state_publisher_gui'):
             (prefix,) = shlex.split(node.get('launch-prefix'))
             assert prefix.endswith('/with_display'), prefix
 

@@ -79,6 +79,12 @@ This appears in the first terminal:
 ```text
 what
 ```
+
+Press `q`, `i` and `,`; this appears in
+the last terminal:
+```text
+faster
+```
 """,
     )
     assert read_lesson(page) == [
@@ -88,6 +94,7 @@ what
         Commands('one\ntwo\n', 20, goes_on=False, fails=False, expected=('[INFO] […]: done',)),
         Commands('three\n', 30, goes_on=False, fails=True),
         Shown(('what',), 35, in_first=True),
+        Shown(('faster',), 41, in_first=False, keys='qi,'),
     ]
 
 

@@ -33,7 +33,8 @@ def set_up(script, workspace):
             'another program is installing packages; run this again when it has ended',
         ),
         (
-            "Err:1 http://mirror.example/debian bookworm InRelease\n  Temporary failure resolving 'x'",
+            'Err:1 http://mirror.example/debian bookworm InRelease\n  Temporary failure '
+            "resolving 'x'",
             'a server of packages cannot be reached',
         ),
         (
@@ -72,7 +73,8 @@ def test_other_systems_are_told_what_they_lack_and_nothing_is_tried(tmp_path, de
     assert (code, errors) == (
         1,
         (
-            'rosbots: this installs packages on Debian 12 and 13 only (or in a container of it, see '
+            'rosbots: this installs packages on Debian 12 and 13 only (or in a container of it, '
+            'see '
             'Containerfile); this machine, Ubuntu 24.04 LTS, lacks catkin cmake\n'
         ),
     )
