@@ -60,6 +60,14 @@ _STRUCTS = {kind: _struct(kind) for kind in KINDS}
 _DECODER: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(Union[tuple(_STRUCTS.values())])  # noqa: UP007  of as many as there are
 
 
+def is_camera(raw: object) -> bool:
+    """Tell whether a message says where a page looks from."""
+    try:
+        return type(read(raw)).__name__ == 'ViewerCameraMessage'
+    except (MalformedError, RefusedError):
+        return False
+
+
 def read(raw: object) -> Any:  # noqa: ANN401  one of `_STRUCTS`
     """Return a message whose fields have the types and sizes that a page sends.
 

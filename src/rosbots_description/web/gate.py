@@ -3,9 +3,11 @@
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Iterable
+from collections import deque
+from collections.abc import Awaitable, Callable, Iterable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import viser
@@ -14,7 +16,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
 from .allowance import Allowance
-from .client_messages import MalformedError, RefusedError, check_value, read
+from .client_messages import MalformedError, RefusedError, check_value, is_camera, read
 from .door import CONTROLS
 from .notices import left_out, show
 from .uploads import Upload, Uploads, content
@@ -35,6 +37,7 @@ OF_VIEWERS = {
     'FileTransferPart',
 }
 MAX_MESSAGE = 24_000_000  # [bytes], that of a large picture
+MOST_EARLY = 100_000  # [bytes] of messages that wait for the first one of a camera
 RATE, BURST = 1000.0, 5000.0  # messages of a browser in a second, and at once
 BACKLOG = 200  # commands that wait to be carried out; further ones are not read meanwhile
 ROOM = 0.02  # [s, wall] between two looks for room
@@ -52,6 +55,8 @@ class Visitor:
 
     connection: ServerConnection
     may_control: bool
+    has_looked: bool = False  # its first camera message has come
+    early: deque[Data] = field(default_factory=deque)  # what came before
     messages: Allowance = field(default_factory=lambda: Allowance(BURST, RATE))
     next_notice: float = 0.0  # [s, monotonic]
     left_out: int = 0  # notices since the last one
@@ -106,7 +111,7 @@ class Gate:
                 self, decode: bool | None = None
             ) -> Data:
                 while True:
-                    raw = await super().recv(decode)
+                    raw = await gate._next(self, partial(super().recv, decode))
                     if await gate._admits(self, raw):
                         return raw
 
@@ -130,14 +135,31 @@ class Gate:
 
         return counted
 
+    async def _next(
+        self, connection: ServerConnection, receive: Callable[[], Awaitable[Data]]
+    ) -> Data:
+        """Return the next message.
+
+        What is done before the page has said where it looks comes after that: a slow page shows
+        its buttons before the scene, and viser drops what is not from a client it knows.
+        """
+        visitor = self._visitors[id(connection)]
+        while not visitor.has_looked:
+            raw = await receive()
+            visitor.has_looked = is_camera(raw)
+            if visitor.has_looked or sum(map(len, visitor.early), len(raw)) > MOST_EARLY:
+                return raw
+            visitor.early.append(raw)
+        if self._client(visitor) is None:
+            await asyncio.sleep(0)  # viser has yet to take in the first camera message
+        return visitor.early.popleft() if visitor.early else await receive()
+
     async def _admits(self, connection: ServerConnection, raw: object) -> bool:
         """Return whether viser is to read a message; a malformed one ends its connection."""
         visitor = self._visitors[id(connection)]
         delay = visitor.messages.take()
         if delay > 0.0:
             await asyncio.sleep(delay)
-        if self._client(visitor) is None:
-            await asyncio.sleep(0)  # viser has yet to take in the first camera message
         try:
             await self._wait_for_room()
             message = read(raw)
@@ -214,8 +236,6 @@ class Gate:
         return own.get(number) or self.site.gui._gui_input_handle_from_uuid.get(number)
 
     def _start(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
-        if self._client(visitor) is None:
-            raise MalformedError('A page says where it looks before it sends a file.')
         button = message.source_component_uuid
         if button not in self._receivers or self._control(visitor, button) is None:
             raise MalformedError('This is no button for files.')

@@ -19,7 +19,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from rosbots_description.sim.description import SceneChange
 from rosbots_description.web import Page, Site, gate
-from rosbots_description.web.gate import MOST_CLIENTS
+from rosbots_description.web.gate import MOST_CLIENTS, MOST_EARLY
 from rosbots_description.web.uploads import MAX_BYTES, OF_ONE
 
 UPLOAD = 'Upload URDF, xacro or SDF'
@@ -616,11 +616,24 @@ def test_a_file_by_the_button_of_another_browser_ends_the_connection(browser, si
     assert not [one for one in served[1].told if one[0] == 'insert']
 
 
-def test_a_file_before_the_page_says_where_it_looks_ends_the_connection(browser, site):
+def test_what_is_done_before_the_page_says_where_it_looks_is_done_after_that(browser, site, served):
     with Reconnected(site, browser) as early:
-        early.held.clear()  # of the camera
-        early.upload(UPLOAD, 'early', b'x')
-        with pytest.raises(ConnectionClosed) as closed:  # before its last part is sent, or after
-            early.let()
-            early.wait_until(lambda: False)
-    assert closed.value.rcvd.reason == 'A page says where it looks before it sends a file.'
+        camera = early.held.pop()
+        early.press('space')
+        early.click('Step')
+        early.held.append(camera)
+        early.let()
+        early.wait_until(lambda: {'pause', 'step'} <= {what for what, *_ in served[1].told})
+
+
+def test_what_is_done_without_ever_looking_is_not_kept_for_long(browser, site, served):
+    with Reconnected(site, browser) as early:
+        camera = early.held.pop()
+        for _ in range(MOST_EARLY // 20):
+            early.press('space')
+        early.held.append(camera)
+        early.let()
+        early.wait_until(lambda: served[1].told)
+        early.read()
+    presses = sum(one == ('pause',) for one in served[1].told)
+    assert 0 < presses < MOST_EARLY // 40
