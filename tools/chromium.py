@@ -16,6 +16,7 @@ OPTIONS = [
     '--disable-dev-shm-usage',
     '--disable-background-networking',
     '--disable-component-update',
+    '--disable-gpu-rasterization',  # texts are drawn faster without the software's WebGL
     '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
 ]
@@ -23,7 +24,18 @@ CLOCK = "return document.querySelector('.clock b')?.textContent ?? ''"
 UNTIDY = 'Tried to update non-existent component'  # of what was removed in the same frame
 # [ms] before each frame: pages that draw all the time, in software, would keep the processors busy.
 PAUSE = 500
+# Frames come seldom, and the scene is drawn in them only while somebody looks: see `picture`.
 DRAW_SELDOM = """
+for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced',
+                    'drawElementsInstanced']) {
+  const draw = WebGL2RenderingContext.prototype[name];
+  WebGL2RenderingContext.prototype[name] = function (...numbers) {
+    const isScene = !this.getParameter(this.FRAMEBUFFER_BINDING);
+    if (isScene && !window.isLookedAt) return;
+    window.isDrawn ||= isScene;
+    draw.apply(this, numbers);
+  };
+}
 const soon = requestAnimationFrame, cancelSoon = cancelAnimationFrame, frames = new Map();
 window.requestAnimationFrame = callback => {
   const frame = setTimeout(() => frames.set(frame, soon(now => {
@@ -38,6 +50,15 @@ window.cancelAnimationFrame = frame => {
   frames.delete(frame);
 };
 """.replace('PAUSE', str(PAUSE))
+
+HOPELESS = 180.0  # [s, wall] for a frame that is drawn in software, beside other programs
+# Ends when the scene, and then the page around it, has been drawn.
+LOOK = """
+const done = arguments[0];
+const look = () => window.isDrawn ? requestAnimationFrame(done) : setTimeout(look, 10);
+[window.isLookedAt, window.isDrawn] = [true, false];
+look();
+"""
 
 
 @contextmanager
@@ -54,6 +75,7 @@ def chromium(size: tuple[int, int], *more: str) -> Iterator[webdriver.Chrome]:
         options.add_argument(option)
     driver = webdriver.Chrome(service=Service('/usr/bin/chromedriver'), options=options)
     try:
+        driver.set_script_timeout(HOPELESS)
         width, height = size
         driver.execute_cdp_cmd(
             'Emulation.setDeviceMetricsOverride',
@@ -73,7 +95,9 @@ def picture(driver: webdriver.Chrome) -> Image.Image:
 
     Selenium's own screenshots have a deadline of 10 s, which cannot be changed.
     """
+    driver.execute_async_script(LOOK)
     answer = driver.execute_cdp_cmd('Page.captureScreenshot', {})
+    driver.execute_script('window.isLookedAt = false')
     return Image.open(io.BytesIO(base64.b64decode(answer['data'])))
 
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rospy
-from chromium import clock, drawn, picture
+from chromium import clock, picture
 from geometry_msgs.msg import Twist
 from make_pictures import ROOT, PictureError, Steps, address_in, opened, started
 from PIL import Image
@@ -86,7 +86,6 @@ def shown_at(moment: float, browser: Chrome) -> Image.Image:
     while clock(browser) != f'00:00:{moment:06.3f}':
         if time.monotonic() > end:
             raise PictureError(f'the page does not show {moment:.3f} s within {SLOW:g} s')
-    drawn(browser)
     return picture(browser).convert('RGB').resize(SIZE, Image.Resampling.LANCZOS)
 
 

@@ -75,6 +75,17 @@ new MutationObserver(changes => changes.forEach(change => change.addedNodes.forE
 HAS_TEXT = 'return [...texts].some(text => text.includes(arguments[0]))'
 
 
+def red(pixels):
+    """Return which pixels (rows, columns) are as red as the handle along x."""
+    red, green, blue = pixels
+    return (red - green > 60) & (blue >= green)
+
+
+def coloured(pixels):
+    """Return which pixels (rows, columns) are not grey, as the ground is."""
+    return np.ptp(pixels, axis=0) > 40
+
+
 class Page:
     """What a person does with the page."""
 
@@ -111,36 +122,32 @@ class Page:
         self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title={name}]').click()
 
     def select(self, eye, model, point):
-        """Click on a model, where a point of it [m] is seen; as often as it has not been drawn."""
+        """Click on a model where a point of it [m] is seen; once, as two clicks may be a double."""
         self.open_tab('Edit')
-        end = monotonic() + SLOW
-        while f'\n{model}' not in self.text():
-            if monotonic() > end:
-                raise AssertionError(f'not within {SLOW:g} s: {model} selected')
-            ActionChains(self.driver).move_to_element_with_offset(
-                self.scene(), *eye.pixel(point)
-            ).click().pause(1.0).perform()
+        self.wait_to_see(eye, point, coloured, model)
+        ActionChains(self.driver).move_to_element_with_offset(
+            self.scene(), *eye.pixel(point)
+        ).click().perform()
+        wait_until(lambda: f'\n{model}' in self.text(), f'{model} selected', SLOW)
 
-    def wait_for_red(self, eye, point, what):
-        """Wait until something red, like the handle along x, is seen at a point [m]."""
+    def wait_to_see(self, eye, point, colour, what):
+        """Wait until `red`, say, is seen at a point [m]."""
         scene = self.scene().rect
         x, y = np.add(
             eye.pixel(point),
             (round(scene['x'] + scene['width'] / 2.0), round(scene['y'] + scene['height'] / 2.0)),
         )
         end = monotonic() + SLOW
-        while not np.any((red := self.red())[y - 4 : y + 5, x - 4 : x + 5]):
+        while not np.any((seen := colour(self.pixels()))[y - 4 : y + 5, x - 4 : x + 5]):
             if monotonic() > end:
-                rows, columns = np.nonzero(red)
                 raise AssertionError(
-                    f'not within {SLOW:g} s: {what} at ({x}, {y}); {len(rows)} red pixels, around '
-                    f'({np.mean(columns):.0f}, {np.mean(rows):.0f}); the page: {self.text()!r}'
+                    f'not within {SLOW:g} s: {what} at ({x}, {y}); {np.sum(seen)} pixels are '
+                    f'{colour.__name__}; the page: {self.text()!r}'
                 )
 
-    def red(self):
-        """Return which pixels (rows, columns) are red, now."""
-        red, green, blue = np.moveaxis(np.asarray(picture(self.driver).convert('RGB'), int), -1, 0)
-        return (red - green > 60) & (blue >= green)
+    def pixels(self):
+        """Return the page as red, green and blue, each rows by columns, 0..255."""
+        return np.moveaxis(np.asarray(picture(self.driver).convert('RGB'), int), -1, 0)
 
     def scene(self):
         return self.driver.find_element(By.TAG_NAME, 'canvas')
@@ -395,7 +402,7 @@ class ChromiumTest(unittest.TestCase):
         eye = Eye()
         self.page.select(eye, 'rosbots', TOP)
         before = x_of('rosbots')
-        self.page.wait_for_red(eye, HANDLE, 'the handle')
+        self.page.wait_to_see(eye, HANDLE, red, 'the handle')
         self.page.drag(eye, HANDLE, BEHIND)
         wait_until(lambda: x_of('rosbots') < before - 0.1, 'a move', SLOW)
         for process in descendants(self.page.driver.service.process.pid):
