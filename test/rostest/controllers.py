@@ -14,6 +14,7 @@ from controller_manager_msgs.srv import (
     SwitchController,
     UnloadController,
 )
+from programs import find_program
 from rosgraph_msgs.msg import Log
 from simulator import SimulatorTest, hears, wait_until
 
@@ -103,7 +104,7 @@ class ControllersTest(SimulatorTest):
     def start(self, name, *arguments):
         """Return the process of a program of controller_manager, which prints to a pipe."""
         process = subprocess.Popen(
-            ['rosrun', 'controller_manager', name, *arguments, '__ns:=/arm'],
+            [find_program('controller_manager', name), *arguments, '__ns:=/arm'],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -9,7 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import rosgraph
-import yaml
+from gazebo_msgs.srv import GetWorldProperties
+from programs import find_program, keep
+from raw_client import answer, request_bytes, service_connection
 from simulator import DEADLINE, SimulatorTest, wait_until
 
 
@@ -33,7 +35,7 @@ class ServerProcess:
         self.master = master or os.environ['ROS_MASTER_URI']
         self.environment = {**os.environ, 'ROS_MASTER_URI': self.master, **environment}
         self.process = subprocess.Popen(
-            [*prefix, 'rosrun', package, program, *arguments],
+            [*prefix, find_program(package, program), *arguments],
             env=self.environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -53,14 +55,8 @@ class ServerProcess:
         if not self.process.stdout.closed:
             os.set_blocking(self.process.stdout.fileno(), False)  # its children may have it open
             with contextlib.suppress(BlockingIOError, TypeError):
-                self._keep(self.process.stdout.read())
+                keep(self.process.stdout.read(), self.name, self.process)
         self.process.stdout.close()
-
-    def _keep(self, printed):
-        """Add what it has printed to the logs, which tools/rostests.py searches for errors."""
-        if printed and (folder := os.environ.get('ROS_LOG_DIR')):
-            log = Path(folder, f'{self.name.strip("/")}-{self.process.pid}-printed.log')
-            log.write_text(printed, encoding='utf-8')
 
     def wait_ready(self):
         """Wait until the last service is registered."""
@@ -76,20 +72,14 @@ class ServerProcess:
             return False
         return True
 
-    def call(self, service, *arguments):
-        """Call a service from a new process with this server's master."""
-        ended = subprocess.run(
-            ['rosservice', 'call', f'/{self.name}/{service}', *arguments],
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=DEADLINE,
-            check=True,
-        )
-        return yaml.safe_load(ended.stdout)
+    def call(self, name, service_class, *fields):
+        """Call a service with this server's master."""
+        with service_connection(name, service_class, self.master) as made:
+            made.sendall(request_bytes(service_class._request_class(*fields)))
+            return answer(made, service_class)
 
     def world(self):
-        return self.call('get_world_properties')
+        return self.call('get_world_properties', GetWorldProperties)
 
     def open_files(self):
         """Return the number of open file descriptors, connections included."""
@@ -125,7 +115,7 @@ class ServerProcess:
     def wait(self):
         """Wait until it ends by itself; return its exit code and output."""
         printed, _ = self.process.communicate(timeout=2 * DEADLINE)
-        self._keep(printed)
+        keep(printed, self.name, self.process)
         return self.process.returncode, printed
 
 

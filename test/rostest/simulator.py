@@ -18,6 +18,7 @@ from gazebo_msgs.srv import (
     SpawnModel,
 )
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist
+from programs import find_program
 from std_srvs.srv import Empty
 
 DEADLINE = 60.0  # [s, wall] only ends a hopeless wait; what it limits takes a fraction of it
@@ -98,7 +99,7 @@ SENSOR_BOX = """<robot name="box">
 def spawn_model(name, text):
     """Run spawn_model on a text until it ends; return the completed process."""
     return subprocess.run(
-        ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-stdin', '-model', name],
+        [find_program('gazebo_ros', 'spawn_model'), '-urdf', '-stdin', '-model', name],
         input=text,
         capture_output=True,
         text=True,

@@ -6,6 +6,9 @@ import select
 import subprocess
 import termios
 import threading
+from pathlib import Path
+
+from programs import keep
 
 
 class Terminal:
@@ -58,6 +61,7 @@ class Terminal:
             self.process.wait()
         os.close(self._closing)
         self._reader.join()
+        keep(self.shown(), Path(self.process.args[0]).name, self.process)
         for handle in (self._open, self._keyboard, self._screen):
             os.close(handle)
 

@@ -25,6 +25,7 @@ from controllers import (
     managers,
     periods,
 )
+from programs import find_program
 from sensor_msgs.msg import JointState
 from simulator import DEADLINE, wait_until
 from std_msgs.msg import Float64
@@ -205,7 +206,7 @@ class ManagersTest(ControllersTest):
     def test_spawner_reports_what_cannot_be_loaded_and_waits(self):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
         spawner = subprocess.Popen(
-            ['rosrun', 'controller_manager', 'spawner', '--namespace', '/arm', 'nope', JSC],
+            [find_program('controller_manager', 'spawner'), '--namespace', '/arm', 'nope', JSC],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -21,6 +21,7 @@ from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 
 STEP = 90.0  # [s, wall] timeout of the output of a launch file
+NO_WINDOW = 'gui:=false'  # in all tests but one: it is another RViz
 LINES = 40  # limit of lines in a terminal
 DRIVEN = 0.5  # [m]: about two seconds; a defect printed 400 lines in that time
 NUDGE = 0.1  # [m]
@@ -104,8 +105,8 @@ class FramesTest(unittest.TestCase):
             words = ['rosbots_description', 'rviz.launch', f'rviz_config:={self._view}']
         return debian_rviz.start(lambda: self.open('roslaunch', *words), self.end, STEP)
 
-    def simulator(self):
-        terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch')
+    def simulator(self, *arguments):
+        terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch', *arguments)
         rospy.wait_for_service('/gazebo/spawn_urdf_model', STEP)
         spawn = self.open('roslaunch', 'rosbots_description', 'spawn.launch')
         wait_until(lambda: 'Successfully spawned entity' in spawn.shown(), 'the spawn', STEP)
@@ -165,7 +166,7 @@ class FramesTest(unittest.TestCase):
         self.assert_complete_and_quiet([view, self.simulator()])
 
     def test_rviz_after_the_simulator_and_closed_again(self):
-        simulator = self.simulator()
+        simulator = self.simulator(NO_WINDOW)
         self.assertEqual(self.drive(), BY_THE_TAGS)
         view = self.rviz()
         self.assert_complete_and_quiet([view, simulator])
@@ -174,10 +175,10 @@ class FramesTest(unittest.TestCase):
 
     def test_a_readers_own_rviz_before_the_simulator(self):
         view = self.rviz(own=True)
-        self.assert_complete_and_quiet([view, self.simulator()])
+        self.assert_complete_and_quiet([view, self.simulator(NO_WINDOW)])
 
     def test_a_readers_own_rviz_after_the_simulator(self):
-        simulator = self.simulator()
+        simulator = self.simulator(NO_WINDOW)
         self.assert_complete_and_quiet([self.rviz(own=True), simulator])
 
 

@@ -21,6 +21,7 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import PoseStamped, TransformStamped, Twist
 from nav_msgs.msg import OccupancyGrid
+from programs import find_program
 from rosbots_msgs.srv import GetFriction
 from sensor_msgs.msg import LaserScan
 from server_process import ServerProcess
@@ -59,7 +60,7 @@ def pace():
 
 class GzwebTest(unittest.TestCase):
     def open(self, *arguments):
-        window = Terminal('rosrun', 'gazebo_ros', 'gzweb', *arguments)
+        window = Terminal(find_program('gazebo_ros', 'gzweb'), *arguments)
         self.addCleanup(window.close)
         return window
 

@@ -15,6 +15,7 @@ from dynamic_reconfigure.srv import Reconfigure, ReconfigureRequest
 from gazebo_msgs.srv import (
     DeleteModel,
     DeleteModelRequest,
+    GetModelState,
     GetWorldProperties,
     GetWorldPropertiesRequest,
     SpawnModel,
@@ -163,7 +164,7 @@ class MasterRestartTest(unittest.TestCase):
         self.assertNotIn('Traceback', self.server.end()[1])
 
     def _assert_it_works(self):
-        self.assertIn('rosbots', self.server.world()['model_names'])
+        self.assertIn('rosbots', self.server.world().model_names)
         self._run(
             'rostopic',
             'pub',
@@ -182,7 +183,7 @@ class MasterRestartTest(unittest.TestCase):
         self.assertEqual(self._of_server(), [set(), set(), set()])
 
     def _x(self):
-        return self.server.call('get_model_state', 'rosbots', '')['pose']['position']['x']
+        return self.server.call('get_model_state', GetModelState, 'rosbots', '').pose.position.x
 
     def test_ctrl_c_ends_the_server_without_a_master(self):
         self.master.kill()

@@ -75,7 +75,7 @@ class NeighboursTest(unittest.TestCase):
             there.wait_ready()
             spawn = service(here, 'spawn_urdf_model', SpawnModel)
             self.assertTrue(spawn('rosbots', xml, '/', pose(), '').success)
-            self.assertEqual(there.world()['model_names'], GROUND)
+            self.assertEqual(there.world().model_names, GROUND)
             with ServerProcess(
                 '-urdf', '-stdin', '-model', 'rosbots', program='spawn_model', master=address
             ) as client:
@@ -83,8 +83,8 @@ class NeighboursTest(unittest.TestCase):
             self.assertEqual(client.process.returncode, 0, printed)
             self.assertEqual(here.end()[0], 0)
             # meshes are read from files again
-            there.call('reset_simulation')
-            self.assertEqual(there.world()['model_names'], [*GROUND, 'rosbots'])
+            there.call('reset_simulation', Empty)
+            self.assertEqual(there.world().model_names, [*GROUND, 'rosbots'])
             self.assertEqual(there.end()[0], 0)
             self.assertEqual(os.listdir(folder), [])
 
@@ -125,10 +125,10 @@ class NeighboursTest(unittest.TestCase):
             killed.process.wait()
             wait_until(lambda: not any(map(is_running, families)), 'the end of its processes')
             for number, server in enumerate(others, 1):
-                self.assertEqual(server.world()['model_names'], [*GROUND, f'robot_{number}'])
-                before = server.world()['sim_time']
+                self.assertEqual(server.world().model_names, [*GROUND, f'robot_{number}'])
+                before = server.world().sim_time
                 wait_until(
-                    lambda: server.world()['sim_time'] > before,  # noqa: B023 (called here)
+                    lambda: server.world().sim_time > before,  # noqa: B023 (called here)
                     'advance of the others',
                 )
                 self.assertEqual(server.end()[0], 0)

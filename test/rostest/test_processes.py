@@ -14,6 +14,7 @@ import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from network import services_of
+from programs import find_program
 from rosgraph_msgs.msg import Clock
 from simulator import BOX, DEADLINE, hears, pose, proxy, topics_of, wait_until
 from std_srvs.srv import Empty
@@ -37,7 +38,7 @@ class ProcessTest(unittest.TestCase):
 
     def _start(self, program, *arguments, **environment):
         process = subprocess.Popen(
-            ['rosrun', 'gazebo_ros', program, *arguments],
+            [find_program('gazebo_ros', program), *arguments],
             env={**os.environ, **environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,

@@ -12,6 +12,7 @@ import unittest
 import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
+from programs import find_program
 from simulator import DEADLINE
 
 
@@ -34,7 +35,7 @@ class SpawnModelTest(unittest.TestCase):
 
     def _start(self, *arguments):
         self._process = subprocess.Popen(
-            ['rosrun', 'gazebo_ros', 'spawn_model', '-urdf', '-model', 'box', *arguments],
+            [find_program('gazebo_ros', 'spawn_model'), '-urdf', '-model', 'box', *arguments],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

@@ -18,6 +18,7 @@ import rostest
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState, SpawnModel
 from PIL import Image
+from programs import find_program
 from simulator import BOX, GROUND, pose, proxy, wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
@@ -57,7 +58,7 @@ class WindowTest(unittest.TestCase):
         cls.addClassCleanup(open_display())
 
     def open(self, program, *arguments):
-        terminal = Terminal('rosrun', 'gazebo_ros', program, *arguments)
+        terminal = Terminal(find_program('gazebo_ros', program), *arguments)
         self.addCleanup(terminal.close)
         return terminal
 
