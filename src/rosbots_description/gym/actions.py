@@ -1,7 +1,7 @@
 """What a robot is told in each control step: commands of plugins and controllers, and efforts."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from gymnasium import spaces
@@ -21,6 +21,7 @@ from ..sim.controllers import (
 )
 from ..sim.plugins import Drive, Force, ForceBasedMove, PlanarMove
 
+Action: TypeAlias = Any  # an element of the action space
 Floats = NDArray[np.float32]
 Limits = Mapping[str, float | Sequence[float]]
 
@@ -137,7 +138,7 @@ class Actions:
             next(iter(boxes.values())) if self._is_single else spaces.Dict(boxes)
         )
 
-    def give(self, action: Any) -> None:  # noqa: ANN401  an element of the space
+    def give(self, action: Action) -> None:
         """Give the commands of an action; numbers beyond -1 and 1 count as these.
 
         Raises:
@@ -160,7 +161,7 @@ class Actions:
         return ', '.join(command.name for command, _ in self._commands)
 
 
-def _checked(action: Any, command: Command, scale: list[float]) -> list[float]:  # noqa: ANN401
+def _checked(action: Action, command: Command, scale: list[float]) -> list[float]:
     """Return the numbers of a command in its own units."""
     try:
         numbers = np.asarray(action, float)

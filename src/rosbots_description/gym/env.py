@@ -11,7 +11,7 @@ from gymnasium import spaces
 
 from ..sim import Model, Pose, SimError, World
 from ..sim.rendering import Figure
-from .actions import Limits
+from .actions import Action, Limits
 from .parent_watch import end_with_parent
 from .placement import Place, Range
 from .randomisation import Randomisation
@@ -147,7 +147,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         """Return the observation of the world as it is now; a task adds the parts in `more`."""
         return {one.name: one.read() for one in self._stage.observed}
 
-    def score(self, observation: Observation, action: Any) -> tuple[float, bool]:  # noqa: ANN401
+    def score(self, observation: Observation, action: Action) -> tuple[float, bool]:
         """Return the reward of a control period, and whether it ended the episode.
 
         Args:
@@ -225,7 +225,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
         faults = (*self._stage.found, *self._stage.new_faults())
         return self.observe(), {**self.truth(), 'randomised': drawn, 'faults': faults}
 
-    def step(self, action: Any) -> tuple[Observation, float, bool, bool, Info]:  # noqa: ANN401
+    def step(self, action: Action) -> tuple[Observation, float, bool, bool, Info]:
         """Drive for a control period.
 
         Returns:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..sim import Model, NotFoundError, Odometry, SimError, yaw_of
 from ..sim.plugins import Drive
-from ..sim.sensors import ImuReading, Scan, Sensor
+from ..sim.sensors import CameraSensor, ImuReading, RaySensor, Scan, Sensor
 
 Array = NDArray[Any]
 # Bounds of what has none of its own; the simulator takes nothing beyond them for a position [m] or
@@ -93,7 +93,7 @@ def _odometry(drive: Drive) -> Array:
     return np.array((x, y, yaw_of(orientation), vx, vy, turn), np.float32)
 
 
-def _scan(sensor: Any) -> Observed:  # noqa: ANN401  a ray sensor
+def _scan(sensor: RaySensor) -> Observed:
     shape = (sensor.horizontal.count * sensor.vertical.count,)
     least, most = sensor.range_min, sensor.range_max
 
@@ -106,7 +106,7 @@ def _scan(sensor: Any) -> Observed:  # noqa: ANN401  a ray sensor
     )
 
 
-def _picture(sensor: Any) -> Observed:  # noqa: ANN401  a camera
+def _picture(sensor: CameraSensor) -> Observed:
     lens = sensor.cameras[0].lens
     pixels = np.asarray(sensor.read().pixels)
     most = np.iinfo(pixels.dtype).max
@@ -117,7 +117,7 @@ def _picture(sensor: Any) -> Observed:  # noqa: ANN401  a camera
     )
 
 
-def _depths(sensor: Any) -> Observed:  # noqa: ANN401  a depth camera
+def _depths(sensor: CameraSensor) -> Observed:
     lens = sensor.cameras[0].lens
 
     def read() -> Array:
@@ -129,7 +129,7 @@ def _depths(sensor: Any) -> Observed:  # noqa: ANN401  a depth camera
     )
 
 
-def _touch(sensor: Any) -> Observed:  # noqa: ANN401  a contact sensor
+def _touch(sensor: Sensor) -> Observed:
     return Observed(
         sensor.name,
         spaces.Box(0.0, 1.0, (1,), np.float32),
@@ -137,7 +137,7 @@ def _touch(sensor: Any) -> Observed:  # noqa: ANN401  a contact sensor
     )
 
 
-def _imu(sensor: Any) -> Observed:  # noqa: ANN401  an IMU
+def _imu(sensor: Sensor) -> Observed:
     sensor.readings.latch()
 
     def read() -> Array:

@@ -5,7 +5,7 @@ import multiprocessing
 import os
 import pickle
 import queue
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
@@ -20,6 +20,7 @@ from gymnasium.vector.utils import CloudpickleWrapper
 from gymnasium.wrappers import TimeLimit
 
 from ..sim import SimError
+from .actions import Action
 from .env import SimEnv
 from .worker import Worker, WorkerError
 
@@ -75,7 +76,7 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
             )
         ]
 
-    def step_async(self, actions: Any) -> None:  # noqa: ANN401  an element of the space
+    def step_async(self, actions: Action) -> None:
         """Send actions to the environments.
 
         Raises:
@@ -107,9 +108,9 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
         self.processes[index] = cast(multiprocessing.Process, process)
         return process, ours
 
-    def _raise_if_errors(self, successes: Any) -> None:  # noqa: ANN401  an iterable of bool
+    def _raise_if_errors(self, successes: Iterable[bool]) -> None:
         """Raise what the first failed environment raised; its process is replaced when needed."""
-        failed = len(successes) - sum(successes)
+        failed = [*successes].count(False)
         if not failed:
             return
         self._state = AsyncState.DEFAULT
@@ -211,7 +212,7 @@ def _send_outline(make: MakeEnv, pipe: Connection) -> None:
     pipe.send_bytes(found)
 
 
-def _require(actions: Any, space: spaces.Space[Any], what: str) -> None:  # noqa: ANN401
+def _require(actions: Action, space: spaces.Space[Any], what: str) -> None:
     """Raise a ValueError unless actions have the shape of a space, and are finite."""
     if isinstance(space, spaces.Dict):
         if not isinstance(actions, Mapping) or actions.keys() != space.spaces.keys():

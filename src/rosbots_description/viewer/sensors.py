@@ -2,7 +2,6 @@
 
 from collections.abc import Collection
 from functools import partial
-from typing import Any
 
 from ..sim import Pose, World
 from ..sim.description import ShownReading
@@ -68,11 +67,11 @@ class _Reader:
 
     def __init__(self, sensor: Sensor) -> None:
         self.sensor = sensor
-        self._newest: Any = None
+        self._newest: object = None
 
-    def keep(self, reading: Any) -> None:  # noqa: ANN401  each type of sensor has its own readings
+    def keep(self, reading: object) -> None:
         self._newest = reading
 
-    def take(self) -> Any:  # noqa: ANN401
+    def take(self) -> object:
         taken, self._newest = self._newest, None
         return taken

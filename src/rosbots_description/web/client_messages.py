@@ -7,11 +7,12 @@ no page sends is disconnected; a number that cannot be used is refused in a sent
 import io
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any, Union
+from typing import Any, TypeAlias, Union
 
 import msgspec
 from PIL import Image, UnidentifiedImageError
 from viser import _messages
+from viser._gui_handles import _GuiInputHandle
 from viser.infra._messages import get_type_hints_cached, wire_field_names
 
 MAX_BYTES = 1_000_000  # of a message without a picture; parts of files have 2**19
@@ -34,6 +35,9 @@ KINDS = (
     'FileTransferPart',
     'FileTransferPartAck',
 )
+
+
+Message: TypeAlias = Any  # one of `_STRUCTS`, which are made of viser's messages
 
 
 class MalformedError(Exception):
@@ -68,7 +72,7 @@ def is_camera(raw: object) -> bool:
         return False
 
 
-def read(raw: object) -> Any:  # noqa: ANN401  one of `_STRUCTS`
+def read(raw: object) -> Message:
     """Return a message whose fields have the types and sizes that a page sends.
 
     Raises:
@@ -102,7 +106,7 @@ def read(raw: object) -> Any:  # noqa: ANN401  one of `_STRUCTS`
     return message
 
 
-def check_value(control: Any, value: object) -> None:  # noqa: ANN401  any of viser's
+def check_value(control: _GuiInputHandle[Any], value: object) -> None:
     """Check a new value of a control.
 
     Raises:
@@ -132,7 +136,7 @@ def _is_like(value: object, now: object) -> bool:
     return isinstance(now, bool | str) and isinstance(value, type(now))
 
 
-def _check_range(value: object, props: Any, label: str) -> None:  # noqa: ANN401
+def _check_range(value: object, props: object, label: str) -> None:
     numbers = [float(number) for number in _numbers([value])]
     if not all(map(math.isfinite, numbers)):
         raise RefusedError(f"'{label}' takes finite numbers")
@@ -162,7 +166,7 @@ def _check_numbers(numbers: Iterable[float], what: str) -> None:
         )
 
 
-def _check_camera(camera: Any) -> None:  # noqa: ANN401  a struct
+def _check_camera(camera: Message) -> None:
     what = 'The camera of this browser'
     _check_numbers(_numbers(getattr(camera, name) for name in camera.__struct_fields__), what)
     directions: Sequence[Sequence[float]] = (

@@ -17,10 +17,10 @@ import socket
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 LOOPBACK = ('127.0.0.1', '::1', 'localhost')
@@ -155,7 +155,7 @@ class Door:
             setattr(connection, CONTROLS, True)
         return process(connection, request)
 
-    def _refusal(self, headers: Any) -> str:  # noqa: ANN401  a mapping without its type
+    def _refusal(self, headers: Headers) -> str:
         """Return why a request is refused whatever its token, in a sentence; '' if it is not."""
         host, origin = headers.get('Host', ''), headers.get('Origin', '')
         if origin and urlsplit(origin).netloc != host:
@@ -165,7 +165,7 @@ class Door:
         return ''
 
     @staticmethod
-    def _has_cookie(one: Pass, headers: Any) -> bool:  # noqa: ANN401
+    def _has_cookie(one: Pass, headers: Headers) -> bool:
         """Tell whether a cookie has the token; other servers of the host can set others."""
         for header in headers.get_all('Cookie'):
             for part in header.split(';'):

@@ -5,18 +5,19 @@ import logging
 import time
 from collections import deque
 from collections.abc import Awaitable, Callable, Iterable
-from concurrent.futures import Executor
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 import viser
+from viser._gui_handles import _GuiInputHandle
 from viser._messages import FileTransferPartAck, GuiUpdateMessage
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
 from .allowance import Allowance
-from .client_messages import MalformedError, RefusedError, check_value, is_camera, read
+from .client_messages import MalformedError, Message, RefusedError, check_value, is_camera, read
 from .door import CONTROLS
 from .notices import left_out, show
 from .uploads import Upload, Uploads, content
@@ -183,7 +184,7 @@ class Gate:
                 raise RefusedError(BUSY)
             await asyncio.sleep(ROOM)
 
-    def _check(self, visitor: Visitor, message: Any) -> bool:  # noqa: ANN401  a struct
+    def _check(self, visitor: Visitor, message: Message) -> bool:
         assert self.site is not None
         kind = type(message).__name__
         if kind == 'FileTransferStartUpload':
@@ -200,7 +201,7 @@ class Gate:
                 check_value(control, message.updates['value'])
         return True
 
-    def _check_viewer(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401  a struct
+    def _check_viewer(self, visitor: Visitor, message: Message) -> None:
         """Refuse what changes anything but view and selection of a browser that may only look.
 
         Raises:
@@ -213,7 +214,7 @@ class Gate:
         self._undo(visitor, message)
         raise RefusedError(LOOKS)
 
-    def _undo(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
+    def _undo(self, visitor: Visitor, message: Message) -> None:
         """Show a browser again what is true, in place of what was done there."""
         client = self._client(visitor)
         kind = type(message).__name__
@@ -228,14 +229,14 @@ class Gate:
         elif kind == 'FileTransferStartUpload':
             self._acknowledge(visitor, message, message.size_bytes)  # ends it in the browser
 
-    def _control(self, visitor: Visitor, number: str) -> Any:  # noqa: ANN401  any of viser's
+    def _control(self, visitor: Visitor, number: str) -> _GuiInputHandle[Any] | None:
         """Return a control of this browser, or of all; None: it has none of that number."""
         assert self.site is not None
         client = self._client(visitor)
         own = {} if client is None else client.gui._gui_input_handle_from_uuid
         return own.get(number) or self.site.gui._gui_input_handle_from_uuid.get(number)
 
-    def _start(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
+    def _start(self, visitor: Visitor, message: Message) -> None:
         button = message.source_component_uuid
         if button not in self._receivers or self._control(visitor, button) is None:
             raise MalformedError('This is no button for files.')
@@ -248,7 +249,7 @@ class Gate:
             self._acknowledge(visitor, message, 0)
             self._hand_over(visitor, whole)
 
-    def _add(self, visitor: Visitor, message: Any) -> None:  # noqa: ANN401
+    def _add(self, visitor: Visitor, message: Message) -> None:
         try:
             upload, is_whole = self._uploads.add(visitor, message)
         except RefusedError:
@@ -262,7 +263,7 @@ class Gate:
     def _acknowledge(
         self,
         visitor: Visitor,
-        message: Any,  # noqa: ANN401
+        message: Message,
         size: int,
         received: int | None = None,
     ) -> None:
@@ -323,7 +324,7 @@ class Gate:
         )
 
 
-def _log_failure(done: Any) -> None:  # noqa: ANN401  a future
+def _log_failure(done: Future[Any]) -> None:
     error = done.exception()
     if error is not None:
         logger.error('an uploaded file is not used', exc_info=error)

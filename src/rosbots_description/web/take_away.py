@@ -4,7 +4,7 @@ import io
 import threading
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Protocol
+from typing import Protocol
 
 import viser
 from PIL import Image
@@ -94,7 +94,7 @@ class TakeAwayPanel(Panel):
     def _button(
         self,
         label: str,
-        icon: Any,  # noqa: ANN401
+        icon: viser.IconName,
         act: Callable[[viser.ClientHandle], None],
         gui: viser.GuiApi,
         hint: str,

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import viser
-from viser.infra import StateSerializer
+from viser.infra import Message, StateSerializer
 
 from ..sim.description import ShownMotion
 from .nodes import MODELS
@@ -92,7 +92,7 @@ class _OwnNodes:
     def __init__(self, serializer: StateSerializer) -> None:
         self._serializer = serializer
 
-    def _insert_message(self, message: Any) -> None:  # noqa: ANN401  viser calls it for each
+    def _insert_message(self, message: Message) -> None:  # viser calls it for each
         if getattr(message, 'name', '').startswith(f'{MODELS}/'):
             self._serializer._insert_message(message)
 

@@ -2,9 +2,8 @@
 
 import time
 from dataclasses import dataclass, field
-from typing import Any
 
-from .client_messages import MalformedError, RefusedError
+from .client_messages import MalformedError, Message, RefusedError
 from .text import plain
 
 MAX_BYTES = 10_000_000  # of a file
@@ -36,7 +35,7 @@ class Uploads:
     def __len__(self) -> int:
         return len(self._running)
 
-    def start(self, owner: object, message: Any) -> Upload | None:  # noqa: ANN401  a struct
+    def start(self, owner: object, message: Message) -> Upload | None:
         """Begin a file; return it if it is empty, and so complete.
 
         Raises:
@@ -72,7 +71,7 @@ class Uploads:
         self._running[message.transfer_uuid] = upload
         return None
 
-    def add(self, owner: object, message: Any) -> tuple[Upload | None, bool]:  # noqa: ANN401
+    def add(self, owner: object, message: Message) -> tuple[Upload | None, bool]:
         """Add a part; return its file, None for one that was refused, and whether it is whole.
 
         Raises:

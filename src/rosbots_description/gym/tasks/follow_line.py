@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...sim import World, yaw_of
 from ...sim.description import Box
+from ..actions import Action
 from ..env import Info, Observation
 from ..parallel import make_parallel
 from ..placement import Place
@@ -84,7 +85,7 @@ class FollowLine(Driving):
     def _line(self) -> Line:
         return Line(self.world)
 
-    def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
+    def score(self, _observation: Observation, _action: Action) -> tuple[float, bool]:
         """Reward the way along the line."""
         before, (self._way, self._apart) = self._way, self._line.nearest(*self.pose[:2])
         half = self._line.length / 2.0

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...sim.rendering import Figure
+from ..actions import Action
 from ..env import Info, Observation
 from ..observations import box
 from ..parallel import make_parallel
@@ -55,7 +56,7 @@ class GoToGoal(Driving):
         goal = np.array((self._distance(), math.cos(bearing), math.sin(bearing)), np.float32)
         return {**super().observe(), 'goal': goal}
 
-    def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
+    def score(self, _observation: Observation, _action: Action) -> tuple[float, bool]:
         """Reward the way towards the goal."""
         before, self._left = self._left, self._distance()
         if self.bumps():

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from ...sim import World
 from ...sim.description import Box
 from ...sim.rendering import Figure
+from ..actions import Action
 from ..env import Info, Observation
 from ..parallel import make_parallel
 from . import figures
@@ -85,7 +86,7 @@ class Maze(Driving):
         self.place(*self.numbers(options).get('start', start))
         self._left = self._distances.of(*self.pose[:2])
 
-    def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
+    def score(self, _observation: Observation, _action: Action) -> tuple[float, bool]:
         """Reward what the way has become shorter."""
         before, self._left = self._left, self._distances.of(*self.pose[:2])
         if self.bumps():

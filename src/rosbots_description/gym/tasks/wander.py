@@ -5,6 +5,7 @@ from functools import partial
 from typing import Any, ClassVar
 
 from ...sim.rendering import Figure
+from ..actions import Action
 from ..env import Info, Observation
 from ..parallel import make_parallel
 from . import figures
@@ -29,7 +30,7 @@ class Wander(Driving):
         self.place(*(given.get('start') or self.place_freely(*_START)))
         self._visited = {self._cell()}
 
-    def score(self, _observation: Observation, _action: Any) -> tuple[float, bool]:  # noqa: ANN401
+    def score(self, _observation: Observation, _action: Action) -> tuple[float, bool]:
         """Reward new squares."""
         cell = self._cell()
         is_new = cell not in self._visited

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import genpy
 import rospy
 from rosbots_msgs.srv import GetModelOmissions
 
@@ -11,7 +12,9 @@ from ..clients.gazebo_interface import interruptibly
 TIMEOUT = 10.0  # for an answer [s, wall]
 
 
-def call(name: str, kind: type[Any], timeout: float = TIMEOUT, /, **request: object) -> Any:  # noqa: ANN401  of each service's own type
+def call(
+    name: str, kind: type[Any], timeout: float = TIMEOUT, /, **request: object
+) -> genpy.Message:
     """Return the answer of a service of the simulator `gazebo` of this node's namespace.
 
     Raises:

@@ -5,6 +5,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+import genpy
 import rospy
 
 LATEST = 2  # commands that wait: for a robot that drives, one, and the stop after it
@@ -16,10 +17,10 @@ class Commands(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no t
     def __init__(self, topic: str, kind: type[Any]) -> None:
         super().__init__()
         self._lock = threading.Lock()
-        self._waiting: deque[Any] = deque(maxlen=LATEST)
+        self._waiting: deque[genpy.Message] = deque(maxlen=LATEST)
         self._publisher = rospy.Publisher(topic, kind, self, queue_size=LATEST)
 
-    def publish(self, command: Any) -> None:  # noqa: ANN401  of the topic's type
+    def publish(self, command: genpy.Message) -> None:
         """Publish a command, or keep it for the subscriber that connects first."""
         with self._lock:
             self._waiting.append(command)

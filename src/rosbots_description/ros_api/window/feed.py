@@ -5,6 +5,7 @@ import time
 from collections import deque
 from typing import Any
 
+import genpy
 import rospy
 
 BUFFER = 1 << 22  # [bytes] read at once, so that of large messages the newest is at hand
@@ -39,7 +40,7 @@ class Feed:
         """Unsubscribe."""
         self._subscriber.unregister()
 
-    def _keep(self, message: Any) -> None:  # noqa: ANN401  of the topic's type
+    def _keep(self, message: genpy.Message) -> None:
         now = time.monotonic()
         with self._lock:
             if (

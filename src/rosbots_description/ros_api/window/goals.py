@@ -9,6 +9,7 @@ import math
 from collections.abc import Collection
 from typing import Any
 
+import genpy
 import rospy
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -73,7 +74,7 @@ class RosGoals:
     def _send(
         self,
         topic: str,
-        message: Any,  # noqa: ANN401
+        message: genpy.Message,
         frame: str,
         field: PoseMessage,
         pose: Pose,

@@ -7,6 +7,7 @@ Subscribes:
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import genpy
 import roslib.message
 
 from ...sim.core import SimError
@@ -81,5 +82,5 @@ def _class(kind: str) -> type[Any] | None:
     return found
 
 
-def _stamp(message: Any) -> float | None:  # noqa: ANN401  any message
+def _stamp(message: genpy.Message) -> float | None:
     return message.header.stamp.to_sec() or None if message._has_header else None

@@ -2,7 +2,7 @@
 
 from .base import Sensor, SensorPlugin
 from .block_laser import BlockLaserPlugin, Points
-from .camera import MAX_BURST
+from .camera import MAX_BURST, CameraSensor
 from .camera_outputs import CameraInfo, Cloud, CompressedImage, Image, StampedInfo
 from .camera_plugins import (
     CameraPlugin,
@@ -19,7 +19,7 @@ from .joint_wrench import JointWrench, JointWrenchPlugin
 from .laser import LaserPlugin
 from .link_imu import LinkImu
 from .range import Distance, RangePlugin
-from .ray import Scan
+from .ray import RaySensor, Scan
 from .shown_readings import (
     ENCODINGS,
     picture_stride,
@@ -38,6 +38,7 @@ __all__ = [
     'BumperPlugin',
     'CameraInfo',
     'CameraPlugin',
+    'CameraSensor',
     'Cloud',
     'CompressedImage',
     'ContactPair',
@@ -58,6 +59,7 @@ __all__ = [
     'OpenniKinectPlugin',
     'Points',
     'RangePlugin',
+    'RaySensor',
     'RingCloud',
     'Scan',
     'Sensor',

@@ -1,6 +1,6 @@
 """What a window shows of readings: pictures, and rays and contacts in the scene."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -109,7 +109,7 @@ def shown_contacts(
     )
 
 
-def shown_reading(sensor: Sensor, reading: Any, frame: str) -> ShownReading:  # noqa: ANN401  each type of sensor has its own readings
+def shown_reading(sensor: Sensor, reading: object, frame: str) -> ShownReading:
     """Return what a window shows of a reading of a sensor.
 
     Args:
@@ -123,8 +123,10 @@ def shown_reading(sensor: Sensor, reading: Any, frame: str) -> ShownReading:  # 
     raise SimError(f'readings of {sensor.called} are not shown')
 
 
-def _picture(sensor: CameraSensor, reading: Any, _frame: str) -> ShownReading:  # noqa: ANN401
-    picture: Picture = reading if isinstance(reading, Picture) else reading[0]
+def _picture(
+    sensor: CameraSensor, reading: Picture | Sequence[Picture], _frame: str
+) -> ShownReading:
+    picture = reading if isinstance(reading, Picture) else reading[0]
     if picture.pixels is None:
         return ShownReading(words='The picture is empty.')
     return ShownReading(picture=shown_picture(picture.pixels, sensor.cameras[0].encoding))
