@@ -10,6 +10,7 @@ from functools import partial
 
 import gymnasium
 import numpy as np
+import torch
 from follow_policy import SECTORS, inputs
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
@@ -89,7 +90,9 @@ def main():
     parser.add_argument('--worlds', type=int, default=2, help='in parallel, each a process')
     parser.add_argument('--seed', type=int, default=1)
     options = parser.parse_args()
-    # The same steps, worlds and seed give the same policy on any machine with these packages.
+    # The same steps, worlds and seed give the same policy on any machine with these packages: with
+    # more threads, which cost a small policy time, sums are made in another order.
+    torch.set_num_threads(1)
     make = partial(environment, options.task)
     worlds = make_vec_env(make, options.worlds, seed=options.seed, vec_env_cls=SubprocVecEnv)
     model = PPO(
