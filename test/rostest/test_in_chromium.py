@@ -10,6 +10,7 @@ import signal
 import sys
 import tempfile
 import unittest
+from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 from urllib.parse import urlsplit
@@ -26,6 +27,7 @@ from gazebo_msgs.srv import (
 )
 from PIL import Image
 from rosbots_msgs.srv import Step
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -110,7 +112,14 @@ class Page:
         self.driver.execute_script('texts.clear()')
 
     def click(self, label):
-        self.button(label).click()
+        """Click on a button; on the next one if the page replaces it meanwhile, as it connects."""
+        wait_until(lambda: self._has_clicked(label), f'a click on {label}', SLOW)
+
+    def _has_clicked(self, label):
+        with suppress(StaleElementReferenceException):
+            self.button(label).click()
+            return True
+        return False
 
     def button(self, label):
         """Return the button whose label begins so, when it is there."""
