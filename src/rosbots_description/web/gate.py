@@ -38,7 +38,8 @@ OF_VIEWERS = {
     'FileTransferPart',
 }
 MAX_MESSAGE = 24_000_000  # [bytes], that of a large picture
-MOST_EARLY = 100_000  # [bytes] of messages that wait for the first one of a camera
+# Messages that wait for the first one of a camera, and their size [bytes], at most.
+MOST_EARLY, MAX_EARLY = 100, 1000
 RATE, BURST = 1000.0, 5000.0  # messages of a browser in a second, and at once
 BACKLOG = 200  # commands that wait to be carried out; further ones are not read meanwhile
 ROOM = 0.02  # [s, wall] between two looks for room
@@ -148,7 +149,8 @@ class Gate:
         while not visitor.has_looked:
             raw = await receive()
             visitor.has_looked = is_camera(raw)
-            if visitor.has_looked or sum(map(len, visitor.early), len(raw)) > MOST_EARLY:
+            is_kept = len(visitor.early) < MOST_EARLY and len(raw) <= MAX_EARLY
+            if visitor.has_looked or not is_kept:
                 return raw
             visitor.early.append(raw)
         if self._client(visitor) is None:
