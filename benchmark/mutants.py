@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import ast
 import contextlib
+import faulthandler
 import importlib
 import json
 import math
@@ -184,6 +185,7 @@ def _run(path: Path | None, changed: ast.Module | None, arguments: list[str]) ->
                     os.dup2(nowhere.fileno(), 1)
                     os.dup2(nowhere.fileno(), 2)
                 resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+                faulthandler.disable()  # a crash is a result, of which nobody needs a trace
                 _limit_time()
                 if path:
                     _replace(path, changed)
