@@ -73,7 +73,7 @@ class ServerProcess:
         return True
 
     def call(self, name, service_class, *fields):
-        """Call a service with this server's master."""
+        """Call a service of /gazebo, found by this server's master; return the answer."""
         with service_connection(name, service_class, self.master) as made:
             made.sendall(request_bytes(service_class._request_class(*fields)))
             return answer(made, service_class)
