@@ -206,7 +206,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _require_something(options: argparse.ArgumentParser, flags: argparse.Namespace) -> None:
     """End with 2 if the options do not say what to do."""
-    # 0 is a value
+    # 0 is given, too
     given = {
         name for name, value in vars(flags).items() if value is not None and value is not False
     }

@@ -23,12 +23,11 @@ NAME = 'gzweb'
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of gzweb's options."""
-    # --token is no --token-file
     made = argparse.ArgumentParser(
         prog=NAME,
         description='See and control the simulated world in a browser.',
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
-        allow_abbrev=False,
+        allow_abbrev=False,  # --token is no --token-file
     )
     add_options(made)
     made.add_argument('--port', type=int, default=PORT, help='0 for any that is free')
