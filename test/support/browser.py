@@ -85,10 +85,17 @@ class Browser:
                 self._take(message)
 
     def wait_until(self, condition, timeout=PATIENCE):
-        """Read until the condition holds."""
+        """Read until the condition holds; one on what the page lacks does not hold yet."""
         end = time.monotonic() + timeout
-        while not condition():
-            assert time.monotonic() < end, 'it did not come true'
+        while True:
+            try:
+                holds, lacks = condition(), None
+            except LookupError as error:
+                holds, lacks = False, error
+            if holds:
+                return
+            if time.monotonic() >= end:
+                raise AssertionError('it did not come true') from lacks
             self.read()
 
     def click(self, label):
