@@ -19,6 +19,7 @@ from rospy.impl.registration import (
 )
 
 from .master import NO_MASTER
+from .name_conflict import replacing_node
 from .registrar import Registrar
 
 logger = logging.getLogger(__name__)
@@ -79,7 +80,13 @@ def _is_known(master: rosgraph.Master) -> bool | None:
 
 
 def _register_again(parameters: Iterable[Callable[[], None]]) -> None:
-    """Register everything with a new master; rospy has no public API for this."""
+    """Register everything with a new master; rospy has no public API for this.
+
+    To a node that has just been replaced, its master looks like a new one: nothing of it is
+    registered any more. To register again would take the name back, and end both.
+    """
+    if replacing_node(rospy.get_name(), rospy.get_node_uri()):
+        return
     listeners, topics = get_registration_listeners(), get_topic_manager()
     services = dict(get_service_manager().get_services())
     first = _first_service()

@@ -5,12 +5,14 @@ import os
 import socket
 import threading
 from contextlib import contextmanager
+from unittest import mock
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
+import rospy
 
 from rosbots_description.ros_api.node import node
-from rosbots_description.ros_api.transport import name_conflict
+from rosbots_description.ros_api.transport import name_conflict, registrations
 from rosbots_description.ros_api.transport.name_conflict import (
     NameTakenError,
     RunningNode,
@@ -102,6 +104,30 @@ def test_stopped_process_still_has_its_name(registered, monkeypatch):
 def test_node_that_took_over_the_name_is_reported(living):
     assert replacing_node(NAME, 'http://localhost:1/') == RunningNode(living, os.getpid())
     assert replacing_node(NAME, living) is None
+
+
+@pytest.fixture
+def replaced(living, monkeypatch):
+    """Be a node of the same name; return what is written when it registers again."""
+    monkeypatch.setattr(rospy, 'get_name', lambda: NAME)
+    monkeypatch.setattr(rospy, 'get_node_uri', lambda: 'http://localhost:2/')
+    for name in ('get_registration_listeners', 'get_topic_manager'):
+        monkeypatch.setattr(registrations, name, mock.MagicMock)
+    services = {registrations._first_service(): 'rosrpc://localhost:2'}
+    manager = mock.Mock(get_services=lambda: services.items())
+    monkeypatch.setattr(registrations, 'get_service_manager', lambda: manager)
+    return []
+
+
+def test_replaced_node_does_not_take_its_name_back(replaced):
+    registrations._register_again([lambda: replaced.append('parameter')])
+    assert replaced == []
+
+
+def test_stale_entry_of_a_new_master_does_not_keep_a_node_away(replaced, registered):
+    registered[NAME] = 'http://localhost:1/'
+    registrations._register_again([lambda: replaced.append('parameter')])
+    assert replaced == ['parameter']
 
 
 @pytest.mark.parametrize(
