@@ -60,6 +60,8 @@ def scratch(tmp_path_factory, monkeypatch):
     with tempfile.TemporaryDirectory(prefix='t', dir='/tmp') as place:  # short: for Ray's sockets
         monkeypatch.setattr(tempfile, 'tempdir', place)
         monkeypatch.setenv('TMPDIR', place)
+        # Ray's workers are nice by 15: beside other tests they would stand still.
+        monkeypatch.setenv('RAY_worker_niceness', '0')
         yield
         assert list(Path(place).glob('rb*')) == []
 
@@ -116,6 +118,10 @@ def endless_command(folder):
     """Start a command that makes runs for ever; yield its process when there are rows."""
     path = folder / 'endless.yaml'
     path.write_text(yaml.safe_dump(scenario(folder) | {'repeat': 5000}))
+
+    def has_rows():
+        return list(folder.glob('rows/rows/*.parquet'))
+
     command = subprocess.Popen(
         [
             sys.executable,
@@ -133,7 +139,8 @@ def endless_command(folder):
         env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)},
     )
     try:
-        wait_until(lambda: list(folder.glob('rows/rows/*.parquet')), 'rows', PATIENCE)
+        wait_until(lambda: has_rows() or command.poll() is not None, 'rows', PATIENCE)
+        assert has_rows(), command.communicate()
         yield command
     finally:
         command.kill()

@@ -114,7 +114,7 @@ def replaced(living, monkeypatch):
     for name in ('get_registration_listeners', 'get_topic_manager'):
         monkeypatch.setattr(registrations, name, mock.MagicMock)
     services = {registrations._first_service(): 'rosrpc://localhost:2'}
-    manager = mock.Mock(get_services=lambda: services.items())
+    manager = mock.Mock(get_services=services.items)
     monkeypatch.setattr(registrations, 'get_service_manager', lambda: manager)
     return []
 
