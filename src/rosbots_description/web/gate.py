@@ -70,19 +70,20 @@ class Gate:
     def __init__(self, most_clients: int = MOST_CLIENTS) -> None:
         """Begin; there is room for so many browsers that control, and as many that look."""
         self._most_clients = most_clients
-        self._for_viewers: set[str] = set()  # numbers of controls
+        # By the numbers of controls: the interface that has each, of a browser or of all.
+        self._for_viewers: dict[str, viser.GuiApi] = {}
         self.site: viser.ViserServer | None = None  # when it is complete
         self._visitors: dict[int, Visitor] = {}  # by the identity of the connection
         self._uploads = Uploads()
-        self._receivers: dict[str, Received] = {}  # of files, by the numbers of buttons
+        self._receivers: dict[str, tuple[viser.GuiApi, Received]] = {}  # of files, likewise
 
     def receive(self, button: viser.GuiUploadButtonHandle, received: Received) -> None:
         """Call back, on a thread, with browser, name and content of each file of a button."""
-        self._receivers[button._impl.uuid] = received
+        self._receivers[button._impl.uuid] = button._impl.gui_api, received
 
     def allow_viewers(self, controls: Iterable[Control]) -> None:
         """Let browsers that may only look use controls that act on their own browser only."""
-        self._for_viewers |= {control._impl.uuid for control in controls}
+        self._for_viewers |= {one._impl.uuid: one._impl.gui_api for one in controls}
 
     def may_control(self, client: viser.ClientHandle) -> bool:
         """Tell whether a browser may do more than look."""
@@ -99,10 +100,8 @@ class Gate:
     def forget(self, client: viser.ClientHandle) -> None:
         """Forget the controls that only a browser had which has disconnected."""
         gui = client.gui
-        gone = gui._gui_input_handle_from_uuid.keys() | gui._command_handle_from_uuid.keys()
-        self._for_viewers -= gone
-        for button in gone & self._receivers.keys():
-            del self._receivers[button]
+        self._for_viewers = {n: own for n, own in self._for_viewers.items() if own is not gui}
+        self._receivers = {n: one for n, one in self._receivers.items() if one[0] is not gui}
 
     def connection_class(self) -> type[ServerConnection]:
         """Return the class of connections whose messages are checked here."""
@@ -286,9 +285,10 @@ class Gate:
         if client is not None:
             assert self.site is not None
             executor: Executor = self.site._thread_executor
-            executor.submit(
-                self._receivers[upload.button], client, upload.name, content(upload)
-            ).add_done_callback(_log_failure)
+            _, received = self._receivers[upload.button]
+            executor.submit(received, client, upload.name, content(upload)).add_done_callback(
+                _log_failure
+            )
 
     def _notify(self, visitor: Visitor, sentence: str) -> None:
         """Tell a browser what is refused; of many at once the first, and how many others."""

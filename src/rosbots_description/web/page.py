@@ -188,6 +188,7 @@ class Page:
             browser = self.browsers.pop(client.client_id, None)
             if browser is not None:
                 browser.close()
+            self._site.forget(client)  # when its panels are complete, not while they are made
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
                 self._view.close()

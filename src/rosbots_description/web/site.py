@@ -100,7 +100,6 @@ class Site(viser.ViserServer):
         self._websock_server.on_client_connect(self._prepare)
         gate.site = self
         self.on_client_connect(gate.greet)
-        self.on_client_disconnect(gate.forget)
 
     def _prepare(self, connection: WebsockClientConnection) -> None:
         leave_to_loop(connection.get_message_buffer())
@@ -114,6 +113,10 @@ class Site(viser.ViserServer):
     def allow_viewers(self, *controls: Control) -> None:
         """Let browsers that may only look use controls that act on their own browser only."""
         self._gate.allow_viewers(controls)
+
+    def forget(self, client: viser.ClientHandle) -> None:
+        """Forget the controls that only a browser had which has disconnected."""
+        self._gate.forget(client)
 
     def may_control(self, client: viser.ClientHandle) -> bool:
         """Tell whether a browser may do more than look."""
