@@ -84,10 +84,6 @@ BROWSER = {  # what is started, what the address ends with, the size of the page
     'web_phone_wide.png': (ROOM, '', WIDE_PHONE, ''),
     'arm.png': (ARM, '', DESKTOP, ''),
 }
-# Viser fades the scene in as it draws frames; in software that may stop halfway.
-FADED_IN = """const style = document.createElement('style');
-style.textContent = 'canvas { opacity: 1 !important }';
-document.head.append(style)"""
 LOADING = 30.0  # [s, wall] for all meshes, drawn in software
 OPENING = 5.0  # [s, wall] for what slides in
 DEMO = {'demo_path.png': demo.PATH_PICTURE, 'demo_robot.png': demo.ROBOT_PICTURE}
@@ -208,7 +204,6 @@ def opened(address: str, size: tuple[int, int]) -> Iterator[Chrome]:
         for button in browser.find_elements(By.CSS_SELECTOR, NOTICE):
             button.click()
         time.sleep(LOADING)
-        browser.execute_script(FADED_IN)
         yield browser
 
 

@@ -65,6 +65,7 @@ WORLD = f"""<sdf version="1.6"><world name="default">
     <pose>{' '.join(map(str, EYE))} 0 {PITCH} {YAW}</pose>
   </camera></gui>
 </world></sdf>"""
+SCENE = 'canvas[data-engine]'  # by three.js
 # The picture is of the scene only, and of as many pixels however slow the processor is.
 QUERY = '&fixedDpr=1'
 SCENE_ONLY = """const style = document.createElement('style');
@@ -159,7 +160,7 @@ class Page:
         return np.moveaxis(np.asarray(picture(self.driver).convert('RGB'), int), -1, 0)
 
     def scene(self):
-        return self.driver.find_element(By.TAG_NAME, 'canvas')
+        return self.driver.find_element(By.CSS_SELECTOR, SCENE)
 
     def drag(self, eye, start, end):
         """Press the button at a point [m] and move to another; do not release it."""
@@ -388,6 +389,11 @@ class ChromiumTest(unittest.TestCase):
         self.assertLess(whole['x'], shown['x'])
         self.assertLessEqual(whole['x'] + whole['width'], shown['x'] + shown['width'] + 1.0)
         self.assertLess(shown['height'], 25.0)
+
+    def test_scene_is_not_faint_where_viser_stops_to_fade_it_in(self):
+        scene = self.page.driver.find_element(By.CSS_SELECTOR, SCENE)
+        self.page.driver.execute_script('arguments[0].style.opacity = 0.24', scene)
+        self.assertEqual(scene.value_of_css_property('opacity'), '1')
 
     def test_phone_shows_the_world_and_a_sheet_that_opens(self):
         with chromium(PHONE) as driver:

@@ -83,7 +83,11 @@ _SHEET = f"""
   {_ICON} {{ width: 2.5em; height: 2.5em !important }}
 }}"""
 
-STYLE = f'<style>{_ROWS}{_ICONS}{_CROSS}{_TABS}{_SHEET}</style>'
+# Viser fades the scene in, in five frames after its reflections have been loaded; where they are
+# loaded again meanwhile, as at the start of a page on a slow computer, it would stay faint.
+OPAQUE = 'canvas[data-engine] { opacity: 1 !important }'
+
+STYLE = f'<style>{_ROWS}{_ICONS}{_CROSS}{_TABS}{_SHEET}{OPAQUE}</style>'
 
 # The sheet begins closed; viser opens it. The element is in it, below its handle.
 CLOSE_SHEET = (  # which the page's policy allows; without double quotes, as it is in an attribute

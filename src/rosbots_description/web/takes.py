@@ -11,6 +11,7 @@ import viser
 from viser.infra import Message, StateSerializer
 
 from ..sim.description import ShownMotion
+from .layout import OPAQUE
 from .nodes import MODELS
 
 logger = logging.getLogger(__name__)
@@ -83,7 +84,8 @@ class SceneTake:
         """Return the page, in HTML."""
         with self._lock:
             self._recorders.remove(self._own)
-        return self._serializer.as_html().encode()
+        page = self._serializer.as_html()
+        return page.replace('</head>', f'<style>{OPAQUE}</style></head>', 1).encode()
 
 
 class _OwnNodes:

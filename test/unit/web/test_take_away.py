@@ -21,6 +21,7 @@ from support.window import clock, model
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import SceneChange
 from rosbots_description.web import takes
+from rosbots_description.web.layout import OPAQUE
 from rosbots_description.web.take_away import TakeButton
 
 SIZE = (100, 100)  # [pixels] of the browser's picture
@@ -88,7 +89,9 @@ def test_a_recording_plays_the_scene_without_a_server(browser, simulator):
         simulator.motion(clock(real_time=7.0 + moment, _1=Pose(tuple(place))))
         browser.wait_until(lambda place=place: browser.nodes['/models/a/link'][1] == place)
     browser.click('Stop the recording')
-    recorded = scene_of(download(browser, 'recording.html').decode())
+    content = download(browser, 'recording.html').decode()
+    assert content.index(OPAQUE) < content.index('</head>')
+    recorded = scene_of(content)
     assert recorded['durationSeconds'] == 1.5
     places = [
         (moment, message['position'][0])
