@@ -391,7 +391,7 @@ class ChromiumTest(unittest.TestCase):
         self.assertLess(shown['height'], 25.0)
 
     def test_scene_is_not_faint_where_viser_stops_to_fade_it_in(self):
-        scene = self.page.driver.find_element(By.CSS_SELECTOR, SCENE)
+        scene = self.page.scene()
         self.page.driver.execute_script('arguments[0].style.opacity = 0.24', scene)
         self.assertEqual(scene.value_of_css_property('opacity'), '1')
 

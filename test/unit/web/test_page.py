@@ -10,6 +10,7 @@ from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import LightSpec, Mesh, Plane, SceneChange, SceneSpec
+from rosbots_description.web import browser_panels
 from rosbots_description.web import page as page_module
 from rosbots_description.web.scene import SceneView
 
@@ -41,6 +42,20 @@ def test_what_was_kept_for_browsers_is_freed_when_all_have_gone(site, page):
         wait_until(lambda: page.poll() or not any(client() for client in kept))
     finally:
         gc.enable()
+
+
+def test_a_browser_that_leaves_while_its_panels_are_made_is_freed(site, page, monkeypatch):
+    made, kept = browser_panels.InsertPanel, []
+
+    def late(client, *others):
+        kept.append(weakref.ref(client))
+        wait_until(lambda: not site.get_clients())
+        return made(client, *others)
+
+    monkeypatch.setattr(browser_panels, 'InsertPanel', late)
+    with Browser(site.address) as browser:
+        browser.wait_until(lambda: kept)
+    wait_until(lambda: page.poll() or not kept[0]())
 
 
 def test_browsers_that_come_at_once_share_one_view(site, simulator, page, monkeypatch):
