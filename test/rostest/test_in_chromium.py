@@ -113,12 +113,15 @@ class Page:
         self.driver.execute_script('texts.clear()')
 
     def click(self, label):
-        """Click on a button; on the next one if the page replaces it meanwhile, as it connects."""
+        """Click on a button; on the next one if the page replaces it meanwhile, as it connects.
+
+        The mouse does not press it: as the page fills, a button moves before the release.
+        """
         wait_until(lambda: self._has_clicked(label), f'a click on {label}', SLOW)
 
     def _has_clicked(self, label):
         with suppress(StaleElementReferenceException):
-            self.button(label).click()
+            self.driver.execute_script('arguments[0].click()', self.button(label))
             return True
         return False
 
