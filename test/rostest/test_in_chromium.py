@@ -132,7 +132,15 @@ class Page:
         return self.driver.find_element(By.XPATH, button)
 
     def open_tab(self, name):
-        self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title={name}]').click()
+        """Press a tab until it is open: it, too, moves as the page fills."""
+        wait_until(lambda: self._has_opened(name), f'the tab {name}', SLOW)
+
+    def _has_opened(self, name):
+        with suppress(StaleElementReferenceException):
+            tab = self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title={name}]')
+            tab.click()
+            return tab.get_attribute('aria-selected') == 'true'
+        return False
 
     def select(self, eye, model, point):
         """Click on a model where a point of it [m] is seen; once, as two clicks may be a double."""
