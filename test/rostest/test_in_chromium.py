@@ -113,7 +113,7 @@ class Page:
         self.driver.execute_script('texts.clear()')
 
     def click(self, label):
-        """Click on a button; on the next one if the page replaces it meanwhile, as it connects.
+        """Click on a button that can be seen; on the next one if the page replaces it meanwhile.
 
         The mouse does not press it: as the page fills, a button moves before the release.
         """
@@ -121,8 +121,10 @@ class Page:
 
     def _has_clicked(self, label):
         with suppress(StaleElementReferenceException):
-            self.driver.execute_script('arguments[0].click()', self.button(label))
-            return True
+            button = self.button(label)
+            if button.is_displayed() and button.is_enabled():
+                self.driver.execute_script('arguments[0].click()', button)
+                return True
         return False
 
     def button(self, label):
