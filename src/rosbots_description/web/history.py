@@ -18,7 +18,8 @@ class History(Panel):
 
     def __init__(self, gui: viser.GuiApi, complain: Callable[[str], None]) -> None:
         self._complain = complain
-        self._lock = threading.Lock()
+        self._turn = threading.Lock()  # of an undo: each begins where the one before it has ended
+        self._lock = threading.Lock()  # of the changes
         self._changes: deque[tuple[str, Callable[[], object]]] = deque(maxlen=MOST)
         self._real_time = 0.0  # of the simulator [s]
         self._button = gui.add_button('Undo', icon=viser.Icon.ARROW_BACK_UP, disabled=True)
@@ -37,13 +38,18 @@ class History(Panel):
             self._show()
 
     def undo(self) -> None:
-        """Undo the last change; a refusal is shown, and the change forgotten all the same."""
-        with self._lock:
-            if not self._changes:
-                return
-            what, undo = self._changes.pop()
-            self._show()
-        attempt(undo, lambda reason: self._complain(f'Undo: {what}: {reason}'))
+        """Undo the last change; a refusal is shown, and the change forgotten all the same.
+
+        The one before it is offered when this one is undone.
+        """
+        with self._turn:
+            with self._lock:
+                if not self._changes:
+                    return
+                what, undo = self._changes.pop()
+            attempt(undo, lambda reason: self._complain(f'Undo: {what}: {reason}'))
+            with self._lock:
+                self._show()
 
     def move(self, motion: ShownMotion) -> None:
         """Forget the changes of a simulator that has ended."""

@@ -1,5 +1,7 @@
 """Undo: the last ten changes, the latest first."""
 
+import threading
+
 import pytest
 from support.browser import Browser
 from support.window import clock
@@ -30,6 +32,28 @@ def test_the_last_change_is_undone_first_by_button_and_key(site, history, told):
         browser.press('Z')  # there is nothing more
         browser.read()
     assert told == ['b', 'a']
+
+
+def test_one_change_is_undone_after_the_other(history, told):
+    began, may_end = threading.Event(), threading.Event()
+
+    def insert_again():
+        began.set()
+        assert may_end.wait(60.0)
+        told.append('insert')
+
+    history.add('move', lambda: told.append('move'))
+    history.add('delete', insert_again)
+    presses = [threading.Thread(target=history.undo) for _ in range(2)]
+    presses[0].start()
+    assert began.wait(60.0)
+    presses[1].start()
+    presses[1].join(0.2)  # it can only wait
+    assert told == []
+    may_end.set()
+    for press in presses:
+        press.join()
+    assert told == ['insert', 'move']
 
 
 def test_ten_changes_are_remembered(history, told):
