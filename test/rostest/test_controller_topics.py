@@ -166,12 +166,13 @@ class ControllerTopicsTest(ControllersTest):
         def angle(name):
             return joint(name).position[0]
 
-        def drives(name, kind, message, speed):
+        def drives(name, kind, message, speed, reached=0.2):
+            """Command another speed than before, and wait for it [m/s]."""
             topic = '/car/' + name
             odometry = self.collect(topic.rpartition('/')[0] + '/odom', Odometry)
             self.publisher(topic, kind).publish(message)
             wait_until(
-                lambda: odometry and abs(speed(odometry[-1].twist.twist) - 0.2) < 0.005,
+                lambda: odometry and abs(speed(odometry[-1].twist.twist) - reached) < 0.005,
                 f'the speed by {topic}',
             )
 
@@ -191,15 +192,18 @@ class ControllerTopicsTest(ControllersTest):
         client = Client(f'/car/{GAINS}', timeout=DEADLINE)
         self.assertEqual(client.update_configuration({'p': 2.0})['p'], 2.0)
         wait_until(lambda: abs(angle('flap') - angle('front_left_steer')) < 0.05, 'the flap')
-        drives('four/cmd_vel', Twist, Twist(linear=Vector3(x=0.2)), lambda twist: twist.linear.x)
+        drives(
+            'four/cmd_vel', Twist, Twist(linear=Vector3(x=0.3)), lambda twist: twist.linear.x, 0.3
+        )
         self.assertTrue(self.switch(start=['mecanum'], stop=['four']), self.errors)
         drives('mecanum/cmd_vel', Twist, Twist(linear=Vector3(y=0.2)), lambda twist: twist.linear.y)
         self.assertTrue(self.switch(start=['bicycle'], stop=['mecanum']), self.errors)
         drives(
             'bicycle/cmd_vel',
             Twist,
-            Twist(linear=Vector3(x=0.2), angular=Vector3(z=0.3)),
+            Twist(linear=Vector3(x=0.3), angular=Vector3(z=0.3)),
             lambda twist: twist.linear.x,
+            0.3,
         )
         wait_until(lambda: abs(angle('front_left_steer') - 0.3) < 0.01, 'the steering')
         self.assertEqual(
