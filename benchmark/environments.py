@@ -26,13 +26,16 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from functools import partial
 from itertools import count
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from article import ROOT
 from numpy.typing import NDArray
 from windows import Steps, WindowedLoop, answer
+
+if TYPE_CHECKING:
+    from mujoco_room import MujocoGoToGoal
 
 TASKS = 'rosbots_description.gym:rosbots/'
 TASK = f'{TASKS}GoToGoal-v0'
@@ -59,7 +62,9 @@ def steer(goal: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.stack([np.maximum(goal[..., 1], 0.0), np.clip(2.0 * goal[..., 2], -1.0, 1.0)], -1)
 
 
-def _episodes(environment: Any, drive: Callable[[Any], Any]) -> Steps:  # noqa: ANN401
+def _episodes(
+    environment: gymnasium.Env[Any, Any] | MujocoGoToGoal, drive: Callable[[Any], Any]
+) -> Steps:
     """Return a function that drives one episode after the other.
 
     Args:
@@ -86,7 +91,7 @@ def goal() -> Iterator[Steps]:
         yield _episodes(environment, _towards_goal)
 
 
-def _towards_goal(seen: Any) -> Any:  # noqa: ANN401  an observation, an action
+def _towards_goal(seen: dict[str, NDArray[np.float32]]) -> NDArray[np.float32]:
     return steer(seen['goal'])
 
 

@@ -16,11 +16,21 @@ from xml.sax.saxutils import quoteattr
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from rosbots_description.gym.tasks.driving import BUMPED
 from rosbots_description.gym.tasks.go_to_goal import REACHED, GoToGoal
+from rosbots_description.sim import Model, Pose
 from rosbots_description.sim.core import compose, inverse, yaw_of
-from rosbots_description.sim.description import Box, Collision, Cylinder, Mesh, Plane, Sphere
+from rosbots_description.sim.description import (
+    Box,
+    Collision,
+    Cylinder,
+    LinkSpec,
+    Mesh,
+    Plane,
+    Sphere,
+)
 from rosbots_description.sim.meshes import read_mesh
 
 MOST_FRICTION = 100.0
@@ -34,7 +44,7 @@ def _numbers(*values: float) -> str:
     return quoteattr(' '.join(f'{value:.9g}' for value in values))
 
 
-def _placed(pose: Any) -> str:  # noqa: ANN401
+def _placed(pose: Pose) -> str:
     x, y, z, w = pose.orientation
     return f'pos={_numbers(*pose.position)} quat={_numbers(w, x, y, z)}'
 
@@ -76,7 +86,7 @@ class _Writer:
             corners = np.unique(np.asarray(vertices) * mesh.scale, axis=0)
             yield f'<mesh name="{name}" inertia="shell" vertex={_numbers(*corners.ravel())}/>'
 
-    def body(self, model: Any, link: Any, world_pose: Any, joints: str, inner: str) -> str:  # noqa: ANN401
+    def body(self, model: Model, link: LinkSpec, world_pose: Pose, joints: str, inner: str) -> str:
         """Return a link as a body; `joints` and `inner` are what else is in it."""
         geoms = ''.join(
             self.geom(one, f'{model.name}/{link.name}/{one.name}', model.static)
@@ -95,7 +105,7 @@ class _Writer:
             f'{joints}{mass}{geoms}{inner}</body>'
         )
 
-    def model(self, model: Any, torque: float) -> str:  # noqa: ANN401
+    def model(self, model: Model, torque: float) -> str:
         """Return a model whose joints, if any, are wheels below its first link."""
         root, *others = model.spec.links
         if not model.static and root.mass_properties.pose.orientation != (0.0, 0.0, 0.0, 1.0):
@@ -186,7 +196,7 @@ class MujocoGoToGoal:
 
     def step(
         self,
-        action: Any,  # noqa: ANN401
+        action: NDArray[np.float32],
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Drive for a control period."""
         linear, angular = np.clip(np.asarray(action, float), -1.0, 1.0) * self._limits
@@ -266,7 +276,7 @@ class MujocoGoToGoal:
             ),
         }
 
-    def scan(self) -> Any:  # noqa: ANN401
+    def scan(self) -> NDArray[np.float32]:
         """Return the ranges of the scan [m], the greatest without a hit."""
         turn = self.data.xmat[self._base].reshape(3, 3)
         origin = self.data.xpos[self._base] + turn @ self._sensor.position

@@ -20,6 +20,7 @@ from ..sim.controllers import (
     MecanumDriveController,
 )
 from ..sim.plugins import Drive, Force, ForceBasedMove, PlanarMove
+from ..sim.runtime import Plugin
 
 Action: TypeAlias = Any  # an element of the action space
 Floats = NDArray[np.float32]
@@ -34,7 +35,7 @@ class Command(NamedTuple):
     give: Callable[[Sequence[float]], None]
 
 
-def _of_plugin(plugin: Any) -> Command | None:  # noqa: ANN401  each class has its own command
+def _of_plugin(plugin: Plugin) -> Command | None:
     name = plugin.spec.name
     if isinstance(plugin, PlanarMove | ForceBasedMove):
         return Command(name, 3, lambda numbers: plugin.command(numbers[0], numbers[2], numbers[1]))

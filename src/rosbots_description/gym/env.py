@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from gymnasium.core import RenderFrame
 
 from ..sim import Model, Pose, SimError, World
 from ..sim.rendering import Figure
@@ -252,7 +253,7 @@ class SimEnv(gymnasium.Env[Observation, Any]):
             {**self.truth(), 'faults': self._stage.new_faults()},
         )
 
-    def render(self) -> Any:  # noqa: ANN401
+    def render(self) -> RenderFrame | list[RenderFrame] | None:
         """Return what `render_mode` asks for.
 
         By 'rgb_array' a picture (480, 640, 3) of the robot in its world, and of `figures`. By 'web'

@@ -62,8 +62,8 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
             for make, core in zip(env_fns, _cores(len(env_fns)), strict=True)
         )
 
-        def make_first() -> Any:  # noqa: ANN401  an outline is enough of an environment
-            return outline if os.getpid() == own else first()
+        def make_first() -> gymnasium.Env[Any, Any]:
+            return cast('gymnasium.Env[Any, Any]', outline) if os.getpid() == own else first()
 
         super().__init__(
             [make_first, *others], copy=copy, context='fork', autoreset_mode=autoreset_mode
@@ -136,7 +136,7 @@ class _Memory:
         return self._array
 
 
-def _memory(observations: Any) -> Any:  # noqa: ANN401  arrays in dicts
+def _memory(observations: Mapping[str, Any] | np.ndarray[Any, Any]) -> object:
     """Return the shared memory that observations are read from."""
     if isinstance(observations, Mapping):
         return {name: _memory(part) for name, part in observations.items()}
@@ -237,7 +237,7 @@ def make_parallel(
     max_episode_steps: int | None = None,
     copy: bool = True,
     autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
-    **options: Any,  # noqa: ANN401
+    **options: Any,
 ) -> ParallelEnv:
     """Return environments of a class in parallel; `gymnasium.make_vec` calls this for the tasks.
 

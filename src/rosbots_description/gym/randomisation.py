@@ -1,9 +1,9 @@
 """What differs between episodes: drawn by the seed, undone by the next reset."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NoReturn
+from typing import Any, NoReturn, SupportsFloat
 
 import numpy as np
 
@@ -119,7 +119,7 @@ class Randomisation:
         return drawn
 
 
-def _numbers(values: Any) -> list[float]:  # noqa: ANN401  what a user gave
+def _numbers(values: Iterable[SupportsFloat]) -> list[float]:
     """Return values as finite numbers; none of them if they are not."""
     try:
         numbers = [float(value) for value in values]

@@ -118,7 +118,7 @@ class Worker:
         answer, fulfilled = self._pipe.recv()
         return answer, fulfilled
 
-    def _first_steps(self, observation: Any, info: dict[str, Any]) -> list[Any]:  # noqa: ANN401
+    def _first_steps(self, observation: object, info: dict[str, Any]) -> list[object]:
         """Return the steps that end the episode of the worker that died, and begin the next one."""
         if self._mode == AutoresetMode.SAME_STEP:
             return [

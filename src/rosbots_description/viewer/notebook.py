@@ -4,11 +4,28 @@ import html
 import json
 import sys
 import threading
-from typing import Any
+from collections.abc import Callable
+from typing import Protocol
 
 from ..sim import World
 from .viewer import Viewer
 from .window import open_site
+
+
+class _Events(Protocol):
+    """Those of a shell of IPython."""
+
+    def register(self, event: str, function: Callable[..., object]) -> None:
+        """Call a function at an event."""
+
+    def unregister(self, event: str, function: Callable[..., object]) -> None:
+        """Call it no more."""
+
+
+class _Shell(Protocol):
+    """What is used of a shell of IPython, which needs not be installed."""
+
+    events: _Events
 
 
 class ShownViewer(Viewer):
@@ -100,7 +117,7 @@ def show(world: World, port: int = 0, height: int = 600) -> ShownViewer:
     return ShownViewer(world, port, height)
 
 
-def _shell() -> Any:  # noqa: ANN401  of IPython, which needs not be installed
+def _shell() -> _Shell | None:
     """Return the shell of the notebook that runs this; None elsewhere."""
     ipython = sys.modules.get('IPython')  # a notebook has imported it
     return None if ipython is None else ipython.get_ipython()

@@ -48,6 +48,7 @@ BUSY = 'The simulator is busy: some of what was done here is left out'
 PAUSE = 1.0  # [s, wall] between two notices of refusals
 
 Received = Callable[[viser.ClientHandle, str, bytes], object]
+Handler = Callable[[ServerConnection], Awaitable[None]]
 Control = viser.GuiInputHandle[Any] | viser.GuiButtonHandle | viser.CommandHandle
 
 
@@ -118,7 +119,7 @@ class Gate:
 
         return Connection
 
-    def counting(self, handler: Callable[[ServerConnection], Any]) -> Callable[..., Any]:
+    def counting(self, handler: Handler) -> Handler:
         """Return the handler of a connection with a limit on how many there are."""
 
         async def counted(connection: ServerConnection) -> None:

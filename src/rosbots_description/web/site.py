@@ -13,7 +13,7 @@ import websockets.asyncio.server
 from viser.infra import WebsockClientConnection
 
 from .door import TOKEN, Door, Process, new_token
-from .gate import MAX_MESSAGE, MOST_CLIENTS, Control, Gate, Received
+from .gate import MAX_MESSAGE, MOST_CLIENTS, Control, Gate, Handler, Received
 from .loop_event import leave_to_loop
 from .policy import page_headers
 
@@ -71,11 +71,8 @@ class Site(viser.ViserServer):
         serve = websockets.asyncio.server.serve
 
         def serve_here(
-            handler: Any,  # noqa: ANN401
-            *_address: Any,  # noqa: ANN401
-            process_request: Process,
-            **options: Any,  # noqa: ANN401
-        ) -> Any:  # noqa: ANN401
+            handler: Handler, *_address: object, process_request: Process, **options: Any
+        ) -> websockets.asyncio.server.serve:
             options |= {
                 'max_size': MAX_MESSAGE,
                 'max_queue': 1,

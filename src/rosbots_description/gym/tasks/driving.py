@@ -15,7 +15,7 @@ class Driving(SimEnv):
     settings: ClassVar[dict[str, Any]] = {}
     takes: ClassVar[dict[str, int]] = {'start': 3}  # options of `reset`, and how many numbers each
 
-    def __init__(self, **options: Any) -> None:  # noqa: ANN401  those of SimEnv
+    def __init__(self, **options: object) -> None:
         """Load world and robot; the arguments are those of `SimEnv`."""
         super().__init__(
             **{

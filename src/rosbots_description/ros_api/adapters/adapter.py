@@ -26,6 +26,20 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 
+class Tags(Protocol):
+    """The tags of a plugin, or the parameters of a controller."""
+
+    @property
+    def values(self) -> Mapping[str, str | float | bool]:
+        """Those that were read, by name."""
+
+    def string(self, tag: str) -> str | None:
+        """Return one as text."""
+
+    def fill(self, template: str) -> str:
+        """Return `template` with `<tag>` replaced by the value of that tag."""
+
+
 class Named(Protocol):
     """The description of a plugin or controller."""
 
@@ -46,7 +60,7 @@ class HasTopics(Protocol):
         """Its description."""
 
     @property
-    def params(self) -> Any:  # noqa: ANN401  declarations know the class
+    def params(self) -> Tags:
         """Its tags or parameters."""
 
     namespace: str
@@ -115,7 +129,7 @@ class Adapter:
 
     def text(self, template: str) -> str:
         """Return `template` with `<tag>` replaced by the plugin's value of that tag."""
-        return str(self.plugin.params.fill(template))
+        return self.plugin.params.fill(template)
 
     @cached_property
     def tf_prefix(self) -> str:

@@ -61,7 +61,7 @@ class StartLog(Endpoint):
         """Log what upstream logs."""
         plugin = self.adapter.plugin
         if 'rosDebugLevel' in plugin.params.values:
-            set_level(plugin.params.string('rosDebugLevel'))
+            set_level(self.adapter.text('<rosDebugLevel>'))
             logger.debug('Starting plugin %s', plugin.log_prefix.removesuffix(': '))
         logger.debug('%s<tf_prefix> = %s', plugin.log_prefix, self.adapter.tf_prefix)
 

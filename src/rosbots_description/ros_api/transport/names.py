@@ -1,7 +1,7 @@
 """Names of topics and frames, resolved as the plugins of gazebo_ros_pkgs resolve them."""
 
 import re
-from typing import Any, cast
+from typing import cast
 
 import rosgraph
 import rospy
@@ -59,6 +59,6 @@ def search_parameter(namespace: str, parameter: str) -> str | None:
         return None
 
 
-def read_parameter(name: str, default: object = None) -> Any:  # noqa: ANN401  whatever is set
+def read_parameter(name: str, default: object = None) -> object:
     """Return the value of a parameter, or `default`; waits while there is no ROS master."""
     return retry_call(lambda: rospy.get_param(name, default))

@@ -197,8 +197,9 @@ class MimicGains(Endpoint):
         path = plugin.gains_path
         if not path:
             return
-        parameters = read_parameter(topic_name(plugin.namespace, path), {})
-        for key in reversed(path.split('/')):
+        *outer, last = path.split('/')
+        parameters = {last: read_parameter(topic_name(plugin.namespace, path), {})}
+        for key in reversed(outer):
             parameters = {key: parameters}
 
         def configure() -> None:
