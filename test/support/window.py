@@ -36,7 +36,7 @@ class FakeSimulator:
         self.fault = ''
         self.where = Pose(), Twist()
         self.topics = ()
-        self.view = self.time = self.robots = self.inspection = self.hands = self.library = (
+        self.view = self.time = self.robots = self.inspection = self.editor = self.library = (
             self.worlds
         ) = self
         self.contacts, self.joints = FakeContacts(), FakeJoints()

@@ -7,7 +7,7 @@ from ..sim.physics import CrashSandbox
 from ..sim.runtime import World as RunningWorld
 from ..web import Site
 from .contacts import WorldContacts
-from .hands import WorldHands
+from .editor import WorldEditor
 from .inspection import WorldInspection
 from .joints import WorldJoints
 from .pace import WorldPace
@@ -40,7 +40,7 @@ class Viewer(Window):
         self.robots = WorldRobots(world, commands)
         self.joints = WorldJoints(world, commands)
         self.inspection = WorldInspection(world, commands)
-        self.hands = WorldHands(world, commands, sandbox)
+        self.editor = WorldEditor(world, commands, sandbox)
         self.sensors = WorldSensors(world, commands)
         self.contacts = self._contacts = WorldContacts(world)
         self.worlds = WorldFiles(world, commands)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from ..sim import Fault, SimError, World
 from ..web import (
     Contacts,
+    Editor,
     Goals,
-    Hands,
     Inspection,
     Joints,
     Library,
@@ -43,7 +43,7 @@ class Window:
     signals: Signals | None = None
     inspection: Inspection | None = None
     contacts: Contacts | None = None
-    hands: Hands | None = None
+    editor: Editor | None = None
     library: Library | None = None
     worlds: Worlds | None = None
 

@@ -3,9 +3,10 @@
 from .change import Inspection
 from .contacts import Contacts
 from .door import LOOPBACK
+from .downloads import Worlds
 from .drive import Robots
+from .editor import Editor
 from .goals import Goals
-from .hands import Hands
 from .insert import Library
 from .joints import Joints
 from .maps import Maps
@@ -14,14 +15,13 @@ from .plot import Signals
 from .recorder import Recorder
 from .simulator import Simulator
 from .site import Site, WindowError
-from .take_away import Worlds
 from .topics import ShownTopics
 
 __all__ = [
     'LOOPBACK',
     'Contacts',
+    'Editor',
     'Goals',
-    'Hands',
     'Inspection',
     'Joints',
     'Library',

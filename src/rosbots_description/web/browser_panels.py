@@ -9,9 +9,9 @@ from ..sim.description import SceneChange, ShownMotion
 from .camera_keys import CameraKeys
 from .change import ChangePanel
 from .drive import DrivePanel, VelocityCommands
+from .editor import EditorPanel
 from .follow import FollowPanel
 from .gizmo import Drags, Gizmo
-from .hands import HandsPanel
 from .history import History
 from .insert import InsertPanel
 from .inspector import Inspector
@@ -169,10 +169,10 @@ class BrowserPanels(Panel):
 
     def _add_editing(self, tab: Tab) -> None:
         client, shared = self._client, self._shared
-        hands, library = shared.simulator.hands, shared.simulator.library
-        assert hands is not None
+        editor, library = shared.simulator.editor, shared.simulator.library
+        assert editor is not None
         with tab:
-            HandsPanel(client.gui, *self._selected, hands, shared.history, self._notify)
+            EditorPanel(client.gui, *self._selected, editor, shared.history, self._notify)
             if library is not None:
                 self._panels.append(
                     InsertPanel(
@@ -180,7 +180,7 @@ class BrowserPanels(Panel):
                         shared.site,
                         library,
                         lambda: shared.polled.insertable,
-                        hands,
+                        editor,
                         self.selection,
                         shared.history,
                         shared.places,
@@ -192,7 +192,7 @@ class BrowserPanels(Panel):
                 Gizmo(
                     client,
                     *self._selected,
-                    hands,
+                    editor,
                     shared.drags,
                     shared.history,
                     self._notify,

@@ -9,7 +9,7 @@ import viser
 
 from ..sim.core import Pose
 from ..sim.description import SceneChange, ShownMotion
-from .hands import Hands
+from .editor import Editor
 from .history import History
 from .models import Models
 from .nodes import place, pose_of, wxyz
@@ -32,14 +32,14 @@ class Drag:
         self,
         model: str,
         pose: Pose,
-        hands: Hands,
+        editor: Editor,
         complain: Callable[[str], None],
         ended: Callable[['Drag'], None],
     ) -> None:
         """Begin; `ended` is called at the end."""
         self.model, self.start, self.pose = model, pose, pose
         self.is_done = False  # whether the model was moved to the last pose
-        self._hands, self._complain, self._ended = hands, complain, ended
+        self._editor, self._complain, self._ended = editor, complain, ended
         self._released = threading.Event()
         self._is_taken_over = False
         threading.Thread(target=self._run, daemon=True).start()
@@ -67,7 +67,7 @@ class Drag:
             last = self._released.wait(PERIOD)
             if self._is_taken_over:
                 return
-            self._hands.hold(self.model, self.pose, 0.0 if last else HOLD)
+            self._editor.hold(self.model, self.pose, 0.0 if last else HOLD)
             self.is_done = last
 
 
@@ -101,14 +101,14 @@ class Gizmo(Panel):
         client: viser.ClientHandle,
         models: Models,
         selection: Selection,
-        hands: Hands,
+        editor: Editor,
         drags: Drags,
         history: History,
         complain: Callable[[str], None],
     ) -> None:
         self._drags = drags
         self._client, self._models, self._selection = client, models, selection
-        self._hands, self._history, self._complain = hands, history, complain
+        self._editor, self._history, self._complain = editor, history, complain
         self._lock = threading.Lock()  # of the drag
         self._drag: Drag | None = None
         self._handle: viser.TransformControlsHandle | None = None
@@ -175,7 +175,7 @@ class Gizmo(Panel):
             is_free = self._drag is None or self._drag.is_released
             if is_free and self._model is not None and event.target is self._handle:
                 self._drag = Drag(
-                    self._model, pose_of(event.target), self._hands, self._complain, self._end
+                    self._model, pose_of(event.target), self._editor, self._complain, self._end
                 )
                 self._drags.add(self._drag)
 
@@ -195,5 +195,5 @@ class Gizmo(Panel):
             [*drag.start.position, *drag.start.orientation],
         ):
             self._history.add(
-                f"move '{drag.model}'", partial(self._hands.move, drag.model, drag.start)
+                f"move '{drag.model}'", partial(self._editor.move, drag.model, drag.start)
             )

@@ -10,7 +10,7 @@ import viser
 from ..sim.core import Pose, SimError, Vector
 from ..sim.description import LightSpec, ModelSpec, ModelText, SceneChange
 from .choice import Choice
-from .hands import Hands
+from .editor import Editor
 from .history import History
 from .panel import Panel, attempt
 from .place import Places
@@ -57,14 +57,14 @@ class InsertPanel(Panel):
         site: Site,
         library: Library,
         offered: Callable[[], tuple[Sequence[str], Sequence[str]]],
-        hands: Hands,
+        editor: Editor,
         selection: Selection,
         history: History,
         places: Places,
         complain: Callable[[str], None],
     ) -> None:
         """Add the controls; `offered` returns models of the model path, and parameters."""
-        self._client, self._library, self._offered, self._hands = client, library, offered, hands
+        self._client, self._library, self._offered, self._editor = client, library, offered, editor
         self._selection, self._history, self._places = selection, history, places
         self._complain = complain
         self._lights: Mapping[str, LightSpec] = {}
@@ -146,10 +146,10 @@ class InsertPanel(Panel):
         def insert() -> None:
             place = self._places.take(self._client)
             text = replace(read(place), pose=Pose(place))
-            name = self._hands.insert(text, on_ground=True, beside=True)
+            name = self._editor.insert(text, on_ground=True, beside=True)
             self._selection.expect(name)
-            self._history.add(f"insert '{name}'", partial(self._hands.delete, name))
-            missing = self._hands.omissions(name)
+            self._history.add(f"insert '{name}'", partial(self._editor.delete, name))
+            missing = self._editor.omissions(name)
             if missing:
                 more = f' and {len(missing) - LISTED} more' if len(missing) > LISTED else ''
                 self._complain(
@@ -165,8 +165,8 @@ class InsertPanel(Panel):
         if light is None:
             raise SimError('there is no light')
         text = self._library.light(light)
-        self._hands.delete(name)
-        self._history.add(f"delete '{name}'", partial(self._hands.insert, text))
+        self._editor.delete(name)
+        self._history.add(f"delete '{name}'", partial(self._editor.insert, text))
 
 
 def _offer(choice: Choice, names: Sequence[str]) -> None:

@@ -13,6 +13,7 @@ from .bar import Bar
 from .browser_panels import BrowserPanels, Shared, Tabs
 from .clock import Clock
 from .contacts import ContactsPanel
+from .downloads import DownloadsPanel
 from .drive import VelocityCommands
 from .faults import FaultList
 from .gizmo import Drags
@@ -35,7 +36,6 @@ from .show import add_look
 from .simulator import Simulator
 from .site import Site
 from .start_view import StartView
-from .take_away import TakeAwayPanel
 from .topics import TopicPanel
 from .views import look
 from .world_name import WorldName
@@ -116,7 +116,7 @@ class Page:
         if simulator.robots is not None:
             drive = tabs.add_tab('Drive', viser.Icon.STEERING_WHEEL)
         inspect = tabs.add_tab('Models', viser.Icon.LIST_TREE)
-        if simulator.hands is not None:
+        if simulator.editor is not None:
             edit = tabs.add_tab('Edit', viser.Icon.TOOL)
         with tabs.add_tab('Show', viser.Icon.EYE):
             add_look(site.gui, scene, self._lock)
@@ -140,7 +140,7 @@ class Page:
         with tabs.add_tab('Take away', viser.Icon.DOWNLOAD):
             # First, as a recording stamps what moves after it.
             self._panels.insert(
-                0, TakeAwayPanel(site, simulator.worlds, self._redraw, self._notify)
+                0, DownloadsPanel(site, simulator.worlds, self._redraw, self._notify)
             )
         return Tabs(drive, inspect, edit, show, tabs.order - 0.5)
 

@@ -7,15 +7,15 @@ from ..sim.description import SceneChange, ShownMotion
 from .bar import TimeControl
 from .change import Inspection
 from .contacts import Contacts
+from .downloads import Worlds
 from .drive import Robots
+from .editor import Editor
 from .faults import GetFaults
 from .goals import Goals
-from .hands import Hands
 from .insert import Library
 from .joints import Joints
 from .maps import Maps
 from .plot import Signals
-from .take_away import Worlds
 from .topics import ShownTopics
 
 
@@ -63,8 +63,8 @@ class Simulator(Protocol):
         """What can be inserted into it, if anything can."""
 
     @property
-    def hands(self) -> Hands | None:
-        """What can be done to its models, if anything can."""
+    def editor(self) -> Editor | None:
+        """What edits its models, if anything does."""
 
     @property
     def worlds(self) -> Worlds | None:

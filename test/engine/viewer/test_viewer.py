@@ -187,7 +187,7 @@ def test_sensors_are_read_while_they_are_open_only(world):
 def test_models_are_changed_as_by_services(world):
     world.spawn(CRATE, z=0.25)
     with viewing(world, paused=True) as viewer:
-        inspection, hands = viewer.inspection, viewer.hands
+        inspection, editor = viewer.inspection, viewer.editor
         inspection.set_state('crate', None, Pose((1.0, 0.0, 0.25)), Twist((0.5, 0.0, 0.0)))
         pose, twist = inspection.state('crate', None)
         assert pose.position == pytest.approx((1.0, 0.0, 0.25))
@@ -201,25 +201,25 @@ def test_models_are_changed_as_by_services(world):
             inspection.set_mass('crate', 'box', -1.0, True)
         with pytest.raises(SimError, match='must not be negative'):
             inspection.set_friction('crate', -1.0, 0.0)
-        copy = hands.insert(hands.describe('crate'), beside=True)
+        copy = editor.insert(editor.describe('crate'), beside=True)
         assert copy == 'crate_0'
         assert abs(inspection.state(copy, None)[0].position[0] - 1.0) > 0.5
-        hands.delete(copy)
+        editor.delete(copy)
         assert copy not in world.models
-        hands.move('crate', Pose((0.0, 2.0, 0.25)))
+        editor.move('crate', Pose((0.0, 2.0, 0.25)))
         assert inspection.state('crate', 'box')[0].position[1] == pytest.approx(2.0)
         with pytest.raises(SimError, match="no model 'nothing'"):
-            hands.move('nothing', Pose())
+            editor.move('nothing', Pose())
 
 
 def test_shapes_lights_and_files_are_inserted_on_the_ground(world):
     with viewing(world, paused=True) as viewer:
         text = viewer.library.file('crate.urdf', CRATE.encode())
-        name = viewer.hands.insert(text, on_ground=True)
+        name = viewer.editor.insert(text, on_ground=True)
         assert viewer.inspection.state(name, None)[0].position[2] == pytest.approx(0.25)
         sun = viewer.library.light(world.lights['sun'])
-        assert viewer.hands.insert(sun) == 'sun_0'
-        viewer.hands.delete('sun_0')
+        assert viewer.editor.insert(sun) == 'sun_0'
+        viewer.editor.delete('sun_0')
         assert set(world.lights) == {'sun'}
 
 
@@ -227,8 +227,8 @@ def test_a_model_that_crashes_the_engine_is_refused_and_the_world_goes_on(world,
     monkeypatch.setattr(Engine, 'add', crash)
     with open_sandbox() as sandbox, viewing(world, sandbox=sandbox) as viewer:
         with pytest.raises(SimError, match=r'it crashed the physics engine \(SIGSEGV\)'):
-            viewer.hands.insert(ModelText('', CRATE.replace('"box"', f'"{CRASHING}"')))
-        assert viewer.hands.insert(ModelText('', CRATE)) == 'crate'
+            viewer.editor.insert(ModelText('', CRATE.replace('"box"', f'"{CRASHING}"')))
+        assert viewer.editor.insert(ModelText('', CRATE)) == 'crate'
 
 
 @pytest.mark.parametrize(
@@ -243,7 +243,7 @@ def test_a_model_that_crashes_the_engine_is_refused_and_the_world_goes_on(world,
 )
 def test_a_text_that_is_a_path_is_never_opened(world, content):
     with viewing(world, paused=True) as viewer, pytest.raises(SimError, match='begins with <'):
-        viewer.hands.insert(ModelText('', content))
+        viewer.editor.insert(ModelText('', content))
 
 
 def test_xacro_from_a_browser_is_refused(world):
@@ -254,7 +254,7 @@ def test_xacro_from_a_browser_is_refused(world):
 def test_a_push_acts_in_the_axes_of_the_link(world):
     crate = world.spawn(CRATE, z=5.0, yaw=1.5707963)
     with viewing(world, paused=True) as viewer:
-        viewer.hands.push('crate::box', (20.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.1, True)
+        viewer.editor.push('crate::box', (20.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.1, True)
         viewer.time.step(200)
         wait_until(lambda: viewer.commands.call(lambda: world.clock.steps) == 200, 'the steps')
         assert viewer.inspection.state('crate', None)[1].linear[1] == pytest.approx(1.0, rel=0.02)

@@ -1,4 +1,4 @@
-"""A service by which hands hold a model; not in Gazebo."""
+"""A service by which a page holds a model that is dragged; not in Gazebo."""
 
 import time
 

@@ -2,8 +2,8 @@
 
 from ..messages import SENSOR_TYPES
 from .contacts import RosContacts
+from .editor import RosEditor
 from .goals import RosGoals
-from .hands import RosHands
 from .inspection import RosInspection
 from .joints import RosJoints
 from .library import RosLibrary
@@ -31,7 +31,7 @@ class GazeboSimulator:
         self.inspection = RosInspection()
         self.contacts = RosContacts()
         self.library = RosLibrary()
-        self.hands = RosHands()
+        self.editor = RosEditor()
         self.worlds = RosWorlds()
         self.sensors = RosReadings(topics, SENSOR_TYPES)
         self.maps = RosMaps(topics)

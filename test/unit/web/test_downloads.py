@@ -21,8 +21,8 @@ from support.window import clock, model
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import SceneChange
 from rosbots_description.web import takes
+from rosbots_description.web.downloads import TakeButton
 from rosbots_description.web.layout import OPAQUE
-from rosbots_description.web.take_away import TakeButton
 
 SIZE = (100, 100)  # [pixels] of the browser's picture
 

@@ -1,4 +1,4 @@
-"""What hands do to models, by the simulator's services."""
+"""Edits of the models of a simulator, by its services."""
 
 import rospy
 from gazebo_msgs.msg import ModelState
@@ -22,8 +22,8 @@ SPAWN_TIMEOUT = 60.0  # for large meshes [s, wall]
 MAX_DURATION = 1e6  # of a push [s, simulated]
 
 
-class RosHands:
-    """What can be done to models; each raises SimError with the simulator's sentence."""
+class RosEditor:
+    """Edits models; each method raises SimError with the simulator's sentence."""
 
     def insert(self, text: ModelText, on_ground: bool = False, beside: bool = False) -> str:
         """Spawn a model or light under a name that is free; return the name."""

@@ -1,4 +1,4 @@
-"""What hands do to the models of a world: insert, delete, move, push."""
+"""Edits of the models of a world: insert, delete, move, push."""
 
 import math
 import time
@@ -18,8 +18,8 @@ _BLANK = '\ufeff \t\r\n'
 _SDF = 'sdf', 'gazebo'
 
 
-class WorldHands:
-    """Actions on models; each raises SimError with a sentence if it is refused."""
+class WorldEditor:
+    """Edits models; each method raises SimError with a sentence if it is refused."""
 
     def __init__(self, world: World, commands: WorldCommands, sandbox: CrashSandbox | None) -> None:
         self._world, self._commands, self._sandbox = world, commands, sandbox

@@ -1,4 +1,4 @@
-"""Actions on the selected model: push, duplicate, delete."""
+"""Edits of models, and the controls for them: push, duplicate, delete what is selected."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -19,8 +19,8 @@ HINT = 'Click on a model to move, push, duplicate or delete it.'
 AXES = ('world', 'link')
 
 
-class Hands(Protocol):
-    """What can be done to models; each raises SimError with a sentence if it is refused."""
+class Editor(Protocol):
+    """Edits models; each method raises SimError with a sentence if it is refused."""
 
     def insert(self, text: ModelText, on_ground: bool = False, beside: bool = False) -> str:
         """Spawn a model or light under a name that is free; return the name.
@@ -57,7 +57,7 @@ class Hands(Protocol):
         """
 
 
-class HandsPanel(Panel):
+class EditorPanel(Panel):
     """Controls for the selected model."""
 
     def __init__(
@@ -65,11 +65,11 @@ class HandsPanel(Panel):
         gui: viser.GuiApi,
         models: Models,
         selection: Selection,
-        hands: Hands,
+        editor: Editor,
         history: History,
         complain: Callable[[str], None],
     ) -> None:
-        self._models, self._selection, self._hands = models, selection, hands
+        self._models, self._selection, self._editor = models, selection, editor
         self._history, self._complain = history, complain
         self._title = Words(gui, HINT)
         duplicate = gui.add_button('Duplicate', icon=viser.Icon.COPY, hint='Shift-D')
@@ -87,7 +87,7 @@ class HandsPanel(Panel):
         delete.on_click(lambda _: self._do(self._delete))
         push.on_click(
             lambda _: self._do(
-                lambda model: hands.push(
+                lambda model: editor.push(
                     self._link_of(model),
                     force.value,
                     torque.value,
@@ -111,14 +111,14 @@ class HandsPanel(Panel):
         return scoped_name(model, self._selection.link or shown.links[0].name)
 
     def _duplicate(self, model: str) -> None:
-        name = self._hands.insert(self._hands.describe(model), beside=True)
+        name = self._editor.insert(self._editor.describe(model), beside=True)
         self._selection.expect(name)
-        self._history.add(f"duplicate '{model}'", partial(self._hands.delete, name))
+        self._history.add(f"duplicate '{model}'", partial(self._editor.delete, name))
 
     def _delete(self, model: str) -> None:
-        text = self._hands.describe(model)
-        self._hands.delete(model)
-        self._history.add(f"delete '{model}'", partial(self._hands.insert, text))
+        text = self._editor.describe(model)
+        self._editor.delete(model)
+        self._history.add(f"delete '{model}'", partial(self._editor.insert, text))
 
     def _do(self, act: Callable[[str], None]) -> None:
         model = self._selection.model

@@ -1,4 +1,4 @@
-"""What one takes away from the page: a picture, a video, a recording, the world."""
+"""Downloads from the page: a picture, a video, a recording, the world."""
 
 import io
 import threading
@@ -33,7 +33,7 @@ class Worlds(Protocol):
         """
 
 
-class TakeAwayPanel(Panel):
+class DownloadsPanel(Panel):
     """Downloads for the browser that asks."""
 
     def __init__(
