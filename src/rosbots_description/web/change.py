@@ -83,9 +83,10 @@ class ChangePanel(Panel):
         self, gui: viser.GuiApi, label: str, command: Callable[[ShownModel, str | None], None]
     ) -> None:
         def act() -> None:
-            model = self._models.all.get(self._selection.model or '')
-            if model is not None:
-                command(model, self._selection.link)
+            with self._history.turn:
+                model = self._models.all.get(self._selection.model or '')
+                if model is not None:
+                    command(model, self._selection.link)
 
         gui.add_button(label).on_click(lambda _: attempt(act, self._complain))
 

@@ -116,14 +116,16 @@ class EditorPanel(Panel):
         self._history.add(f"duplicate '{model}'", partial(self._editor.delete, name))
 
     def _delete(self, model: str) -> None:
+        self._selection.choose(None)  # nobody asks for it any more, or deletes it again
         text = self._editor.describe(model)
         self._editor.delete(model)
         self._history.add(f"delete '{model}'", partial(self._editor.insert, text))
 
     def _do(self, act: Callable[[str], None]) -> None:
-        model = self._selection.model
-        if model is not None:
-            attempt(lambda: act(model), self._complain)
+        with self._history.turn:
+            model = self._selection.model
+            if model is not None:
+                attempt(lambda: act(model), self._complain)
 
     def _show(self) -> None:
         model, link = self._selection.model, self._selection.link

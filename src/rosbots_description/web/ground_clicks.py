@@ -27,8 +27,8 @@ class GroundClicks:
     def ask(self, client: viser.ClientHandle, sentence: str, receive: Receive) -> None:
         """Ask a browser for a click, and let it know; `receive` gets the point [m], z = 0."""
         with self._lock:
-            if not self._asked:
-                self._scene.on_click()(self._click)
+            if client.client_id not in self._asked:
+                client.scene.on_click()(self._click)  # sent before the sentence, by its own scene
             self._asked[client.client_id] = receive
         show(client, sentence)
 
@@ -47,25 +47,20 @@ class GroundClicks:
 
     def _forget(self, client: viser.ClientHandle) -> None:
         self.unmark(client)
-        self._take(client.client_id)
+        with self._lock:
+            self._asked.pop(client.client_id, None)
 
     def _click(self, event: viser.SceneClickEvent) -> None:
-        if event.client_id not in self._asked:
-            return
         point = on_ground(event.ray_origin, event.ray_direction)
         if point is None:
             show(event.client, 'That is not on the ground; click again, lower.')
             return
-        receive = self._take(event.client_id)
+        with self._lock:
+            receive = self._asked.pop(event.client_id, None)
+            if receive is not None:
+                event.client.scene.remove_click_callback(self._click)
         if receive is not None:
             receive(event.client, point)
-
-    def _take(self, client: int) -> Receive | None:
-        with self._lock:
-            receive = self._asked.pop(client, None)
-            if receive is not None and not self._asked:
-                self._scene.remove_click_callback(self._click)
-            return receive
 
 
 def on_ground(eye: Vector, direction: Vector) -> Vector | None:

@@ -18,7 +18,8 @@ class History(Panel):
 
     def __init__(self, gui: viser.GuiApi, complain: Callable[[str], None]) -> None:
         self._complain = complain
-        self._turn = threading.Lock()  # of an undo: each begins where the one before it has ended
+        # Held during a change by hand or an undo, each of which begins where the last has ended.
+        self.turn = threading.Lock()
         self._lock = threading.Lock()  # of the changes
         self._changes: deque[tuple[str, Callable[[], object]]] = deque(maxlen=MOST)
         self._real_time = 0.0  # of the simulator [s]
@@ -42,7 +43,7 @@ class History(Panel):
 
         The one before it is offered when this one is undone.
         """
-        with self._turn:
+        with self.turn:
             with self._lock:
                 if not self._changes:
                     return

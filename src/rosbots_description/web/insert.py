@@ -157,7 +157,8 @@ class InsertPanel(Panel):
                     'the log of the simulator says why'
                 )
 
-        attempt(insert, self._complain)
+        with self._history.turn:
+            attempt(insert, self._complain)
 
     def _remove_light(self) -> None:
         name = self._light.value

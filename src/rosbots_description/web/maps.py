@@ -1,5 +1,6 @@
 """Maps, paths, poses of particles and goals, where the robot takes them to be."""
 
+import threading
 from typing import Protocol
 
 import viser
@@ -37,16 +38,18 @@ class MapPanel(TopicPanel):
         self._maps = maps
         # What is shown, by topics, and whether TF connects it with a robot.
         self._shown: dict[str, tuple[ShownReading, bool]] = {}
+        self._turn = threading.Lock()
         self._truth = ReadingRow(site, TRUE, 'at a height', checked=False, choose=self._show_truth)
         self._height = site.gui.add_number('Height of the true map [m]', 0.2, step=0.05)
 
     def _show_truth(self) -> None:
-        self._truth.clear()
-        if self._truth.is_checked:
-            try:
-                self._truth.show(self._maps.true_map(float(self._height.value)), IDENTITY)
-            except SimError as error:
-                self._truth.tell(str(error))
+        with self._turn:  # making it takes seconds, in which the box may be checked otherwise
+            self._truth.clear()
+            if self._truth.is_checked:
+                try:
+                    self._truth.show(self._maps.true_map(float(self._height.value)), IDENTITY)
+                except SimError as error:
+                    self._truth.tell(str(error))
 
     def _end(self, name: str) -> None:
         self._shown.pop(name, None)

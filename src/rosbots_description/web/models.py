@@ -52,14 +52,15 @@ class Models(Panel):
 
     def apply(self, change: SceneChange) -> None:
         """Take in models that came, changed or went."""
+        models = dict(self._models)  # others may be iterating over the old ones
         if change.reset:  # its numbers may be those of another simulator
-            self._models.clear()
+            models.clear()
             self._poses.clear()
         for name in change.removed:
-            if shown := self._models.pop(name, None):
+            if shown := models.pop(name, None):
                 for link in shown.links:
                     self._poses.pop(link.number, None)
-        self._models |= {model.name: model for model in change.models}
+        self._models = models | {model.name: model for model in change.models}
 
     def move(self, motion: ShownMotion) -> None:
         """Take in poses."""

@@ -146,13 +146,14 @@ class Page:
 
     def poll(self) -> None:
         """Refresh the panels, and report a silent simulator; to be called about twice a second."""
+        now = time.monotonic()  # while the page is busy, which this may wait for, it hears nobody
         if self._is_open:
             for panel in (*self._panels, *self.browsers.values()):
                 panel.refresh()
         elif self._gone:
             gc.collect()  # what viser had for each is a cycle, with megabytes for compression
         with self._lock:
-            if self._is_open and not self._lost and time.monotonic() - self._heard > SILENCE:
+            if self._is_open and not self._lost and now - self._heard > SILENCE:
                 self._lost = True
                 self._bar.warn(GONE)
 

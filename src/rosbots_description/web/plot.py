@@ -117,9 +117,10 @@ class PlotPanel(ReadingPanel):
 
     def _remove_curve(self, curve: str) -> None:
         with self._lock:
-            self._chart.remove(curve)
-            self._show()
-            self._read_chosen()
+            if curve in self._chart.curves:  # not removed by somebody else a moment ago
+                self._chart.remove(curve)
+                self._show()
+                self._read_chosen()
 
     def _chosen(self) -> set[str]:
         return set(self._chart.curves)

@@ -82,3 +82,14 @@ def test_changes_of_another_simulator_are_forgotten(history, told):
     history.move(clock(real_time=0.1))  # it was restarted
     history.undo()
     assert told == []
+
+
+def test_undo_waits_for_a_change_that_is_being_made(history, told):
+    history.add('insert', lambda: told.append('insert'))
+    with history.turn:  # a deletion, whose answer is late
+        press = threading.Thread(target=history.undo)
+        press.start()
+        press.join(0.2)  # it can only wait
+        history.add('delete', lambda: told.append('delete'))
+    press.join()
+    assert told == ['delete']

@@ -1,5 +1,7 @@
 """Time and speed of the simulator, by its services."""
 
+import threading
+
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from rosbots_msgs.srv import Step
 from std_srvs.srv import Empty
@@ -12,6 +14,9 @@ STEP_TIMEOUT = 600.0  # for many steps [s, wall]
 class RosTimeControl:
     """Commands to the simulator's clock; each raises SimError if it is refused."""
 
+    def __init__(self) -> None:
+        self._turn = threading.Lock()  # the simulator refuses steps while it makes others
+
     def pause(self) -> None:
         """Pause simulated time."""
         call('pause_physics', Empty)
@@ -22,8 +27,9 @@ class RosTimeControl:
 
     def step(self, steps: int) -> None:
         """Pause and make so many steps."""
-        self.pause()
-        call('step', Step, STEP_TIMEOUT, steps=steps)
+        with self._turn:
+            self.pause()
+            call('step', Step, STEP_TIMEOUT, steps=steps)
 
     def reset_world(self) -> None:
         """Return every model to its spawn pose; time is kept."""
