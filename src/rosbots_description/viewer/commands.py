@@ -26,6 +26,7 @@ class WorldCommands:
         """Begin empty; `changed` is notified of each command."""
         self._changed = changed
         self._waiting: deque[Callable[[], None]] = deque()
+        self._is_over = False
 
     @property
     def are_waiting(self) -> bool:
@@ -45,6 +46,8 @@ class WorldCommands:
         def carry_out() -> None:
             if result.set_running_or_notify_cancel():
                 try:
+                    if self._is_over:
+                        raise SimError(BUSY)
                     result.set_result(command())
                 except Exception as error:  # it goes to the caller
                     result.set_exception(error)
@@ -64,7 +67,8 @@ class WorldCommands:
 
         def carry_out() -> None:
             try:
-                command()
+                if not self._is_over:
+                    command()
             except (SimError, ValueError) as error:
                 logger.warning('%s', error)
 
@@ -75,7 +79,16 @@ class WorldCommands:
         for _ in range(len(self._waiting)):
             self._waiting.popleft()()
 
+    def end(self) -> None:
+        """Refuse what waits, and what comes; to be called by the thread that owns the world."""
+        with self._changed:
+            self._is_over = True
+        self.carry_out()
+
     def _add(self, command: Callable[[], None]) -> None:
         with self._changed:
-            self._waiting.append(command)
-            self._changed.notify_all()
+            if not self._is_over:
+                self._waiting.append(command)
+                self._changed.notify_all()
+                return
+        command()  # it is refused

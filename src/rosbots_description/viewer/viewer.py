@@ -51,6 +51,11 @@ class Viewer(Window):
         """Return its kind and the address."""
         return f'<{type(self).__name__} at {self.address}>'
 
+    def close(self) -> None:
+        """Stop serving; a command that waits is refused."""
+        self.commands.end()
+        super().close()
+
     def serve(self, is_over: Callable[[], bool] = lambda: False) -> None:
         """Run the world as the page says, until `is_over`; called about 30 times a second."""
         while not is_over():
