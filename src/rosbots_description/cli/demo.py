@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 
 _MODEL = 'rosbots'
 PATH_PICTURE, ROBOT_PICTURE = 'path.png', 'robot.png'
-_START = 30.0  # [s] wall time for the simulator to start on a slow machine
-_SPAWN = 30.0  # [s] wall time for one spawn.launch
+_START = _SPAWN = 120.0  # [s] wall time that ends a hopeless wait, however busy the machine is
 _POLL = 0.1  # [s] wall time between two looks at a log
 _LANDED = -0.10  # [m] the wheels touch the ground when base_footprint is at -0.12
 

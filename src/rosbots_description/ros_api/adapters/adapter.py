@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import rospy
 from genpy import Message
 
+from ...sim.core import SimError
 from ...sim.runtime import Model, Output
 from ..server import Server
 from ..transport import (
@@ -126,6 +127,17 @@ class Adapter:
         self.is_closed = True
         for close in self._opened:
             close()
+
+    def call(self, command: Callable[[], object]) -> None:
+        """Carry out a command of a service between two steps.
+
+        Raises:
+            rospy.ServiceException: it was refused, or the simulator is shutting down.
+        """
+        try:
+            self.server.loop.call(command)
+        except SimError as error:
+            raise rospy.ServiceException(str(error)) from None
 
     def text(self, template: str) -> str:
         """Return `template` with `<tag>` replaced by the plugin's value of that tag."""

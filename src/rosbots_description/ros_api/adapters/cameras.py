@@ -137,7 +137,7 @@ def set_camera_info(channel: int) -> Callable[[Adapter, str], Callable[[], None]
             info = read_info(request.camera_info)
             plugin = cast(CameraPlugin, adapter.plugin)
             if channel < len(plugin.channels):
-                adapter.server.loop.call(lambda: plugin.set_info(info, channel))
+                adapter.call(lambda: plugin.set_info(info, channel))
             return SetCameraInfoResponse(success=True)
 
         shutdown: Callable[[], None] = rospy.Service(name, SetCameraInfo, answer).shutdown

@@ -36,7 +36,7 @@ def calibration(adapter: Adapter, name: str) -> Callable[[], None]:
     plugin = cast(LinkImu, adapter.plugin)
 
     def answer(_request: EmptyRequest) -> EmptyResponse:
-        adapter.server.loop.call(plugin.calibrate)
+        adapter.call(plugin.calibrate)
         return EmptyResponse()
 
     shutdown: Callable[[], None] = rospy.Service(name, Empty, answer).shutdown

@@ -31,6 +31,7 @@ from .model_source import MissingFileError, SourceError, canonical_xml, read_fil
 DONE, FAILED, INTERRUPTED = 0, 1, 130  # exit codes
 
 _SETTLE = 1.0  # [s] wall time for the joints to appear after the simulator's answer
+_PATIENCE = 60.0  # [s] wall time for what was left out, on a busy machine
 # As sent by Gazebo's client; the server searches its model path only.
 _DATABASE = (
     '<sdf version="1.4"><world name="default"><include><uri>model://{}</uri></include>'
@@ -179,7 +180,7 @@ def _log_omissions(model: str, gazebo_namespace: str) -> None:
         if not has_service(service):
             return
         get_omissions = rospy.ServiceProxy(service, GetModelOmissions)
-        omissions = interruptibly(lambda: get_omissions(model), timeout=_SETTLE).omissions
+        omissions = interruptibly(lambda: get_omissions(model), timeout=_PATIENCE).omissions
         if omissions:
             more = f' and {len(omissions) - _LISTED} more' if len(omissions) > _LISTED else ''
             rospy.logwarn(

@@ -31,9 +31,8 @@ def await_data(connection: socket.socket) -> None:
 
 def subscribed_connections() -> list[TCPROSTransport]:
     """Return the connections to the publishers of all topics that this node subscribes to."""
-    manager = get_topic_manager()
-    topics = [manager.get_subscriber_impl(name) for name, _ in manager.get_subscriptions()]
-    return [connection for topic in topics if topic for connection in topic.connections]
+    topics = tuple(get_topic_manager().subs.values())  # other threads may add some meanwhile
+    return [connection for topic in topics for connection in topic.connections]
 
 
 def wait_for_delivery(connections: Iterable[TCPROSTransport]) -> bool:

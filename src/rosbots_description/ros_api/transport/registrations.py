@@ -7,6 +7,7 @@ Here the simulation and its windows continue, and existing connections are kept.
 import logging
 import threading
 from collections.abc import Callable, Iterable
+from typing import Any
 from xmlrpc.client import Error as XmlRpcError
 
 import rosgraph
@@ -30,12 +31,17 @@ TIMEOUT = 30.0  # time for a registration before it is retried [s, wall]
 
 def published_types() -> dict[str, str]:
     """Return the type of each topic that this node publishes, by its resolved name."""
-    return dict(get_topic_manager().get_publications())
+    return _types(get_topic_manager().pubs)
 
 
 def subscribed_types() -> dict[str, str]:
     """Return the type of each topic that this node subscribes to, by its resolved name."""
-    return dict(get_topic_manager().get_subscriptions())
+    return _types(get_topic_manager().subs)
+
+
+def _types(topics: dict[str, Any]) -> dict[str, str]:
+    """Return the types of rospy's own topics; its other threads may add some meanwhile."""
+    return {name: topic.type for name, topic in tuple(topics.items())}
 
 
 def watch_master(registrar: Registrar, parameters: Iterable[Callable[[], None]]) -> None:
@@ -87,13 +93,13 @@ def _register_again(parameters: Iterable[Callable[[], None]]) -> None:
     """
     if replacing_node(rospy.get_name(), rospy.get_node_uri()):
         return
-    listeners, topics = get_registration_listeners(), get_topic_manager()
+    listeners = get_registration_listeners()
     services = dict(get_service_manager().get_services())
     first = _first_service()
     listeners.notify_added(first, services.pop(first), Registration.SRV)
     for kind, entries in (
-        (Registration.PUB, topics.get_publications()),
-        (Registration.SUB, topics.get_subscriptions()),
+        (Registration.PUB, published_types().items()),
+        (Registration.SUB, subscribed_types().items()),
         (Registration.SRV, services.items()),
     ):
         for name, told in entries:

@@ -24,6 +24,7 @@ from std_msgs.msg import Bool
 from ....sim.controllers import Gains, MimicJointPlugin, Pid, RosControl
 from ....sim.core import SimError
 from ....sim.formats import load_robot_control
+from ...server import LoopError
 from ...transport import is_valid_name, read_parameter, search_parameter, topic_name
 from ..adapter import Adapter, owner_name
 from ..declarations import Endpoint
@@ -124,6 +125,8 @@ class ControlEndpoint(Endpoint):
 
         try:
             server.loop.call(configure)
+        except LoopError:
+            return  # the simulator ends
         except SimError as error:
             logger.critical('%s', error)
             logger.critical('Could not initialize robot simulation interface')
