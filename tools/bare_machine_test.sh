@@ -18,6 +18,11 @@ if [[ $# -lt 2 || ! $1 =~ ^1[23]$ || $UID -ne 0 ]]; then
   echo 'usage (as root): tools/bare_machine_test.sh 12|13 DIRECTORY [COMMAND…]' >&2
   exit 2
 fi
+# What is mounted in the root is not seen from outside, where someone may remove it, and ends with
+# these processes however they end.
+if [[ -z ${BARE_MOUNTS:-} ]]; then
+  BARE_MOUNTS=private exec unshare --mount --propagation private "$0" "$@"
+fi
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 source "$repository/tools/bare_machine/root.bash"
 source "$repository/tools/bare_machine/failures.bash"
@@ -26,7 +31,6 @@ release=$1
 mkdir -p "$2"
 bare=$(cd "$2" && pwd)
 shift 2
-trap leave EXIT
 enter
 [[ $# -gt 0 ]] || set -- demo test
 

@@ -35,7 +35,6 @@ enter() {
   done
   mount -t proc proc "$bare/proc"
   mount --rbind /dev "$bare/dev"
-  mount --make-rslave "$bare/dev"
   for source in ${BARE_BIND:-}; do
     mkdir -p "$bare$source"
     mount --bind "$source" "$bare$source"
@@ -43,13 +42,6 @@ enter() {
   if [[ -n ${BARE_ARCHIVES:-} ]]; then
     mount --bind "$BARE_ARCHIVES" "$bare/var/cache/apt/archives"
   fi
-}
-
-leave() {
-  local mounted
-  for mounted in $(awk -v root="$bare/" 'index($2, root) == 1 {print $2}' /proc/mounts | sort -r); do
-    umount -l "$mounted"
-  done
 }
 
 # write_sources FOLDER: the host's package sources, for the release that is tested.
