@@ -34,7 +34,7 @@ from gazebo_msgs.srv import DeleteModel, GetWorldProperties
 from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Image, LaserScan
-from server import Server, run_in_new_process, wait_until
+from server import PATIENCE, Server, run_in_new_process, wait_until
 from soak_client import VICTIM, Report, kill_clients, serve
 from soak_pages import visit
 from web import Window
@@ -45,8 +45,6 @@ ROBOTS, CLIENTS = 20, 3
 GROWTH = 10.0  # [MB] allowed growth of the server's memory after the warm-up
 WARM_UP = 0.1, 15.0  # share of the duration, and minimum [s, wall]; all calls were made by then
 SLACK = 3  # descriptors and threads that may remain beside those before
-SILENCE = 5.0  # [s, wall] longest time without /clock; pauses are much shorter
-PATIENCE = 30.0  # [s, wall] timeout for clients to end, and for their resources to be freed
 BACK_TO = 5.0  # [s, simulated] latest time at which a reset is noticed
 # Log lines about requests that are meant to fail, and about killed clients.
 EXPECTED = re.compile(
@@ -249,9 +247,11 @@ def soak(server: Server, seconds: float, seed: int) -> Soak:
     warm = usage(server)
     while time.monotonic() < end:
         before = clocks.messages
-        time.sleep(SILENCE)
-        if clocks.messages == before:
-            faults.append(f'no /clock for {SILENCE:g} s after {clocks.last:g} s')
+        try:
+            wait_until(lambda before=before: clocks.messages != before, 'a message on /clock')
+        except TimeoutError as error:
+            faults.append(f'{error}, after {clocks.last:g} s')
+        time.sleep(0.1)
     hot, reports = usage(server), clients.end()
     drivers.stop()
     faults += leftover_faults(server, robots)

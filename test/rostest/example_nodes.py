@@ -7,8 +7,11 @@ import numpy as np
 import rosnode
 import rospy
 from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
+from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from simulator import proxy, wait_until
+from rosbots_msgs.srv import Step
+from simulator import COMMANDS, proxy, wait_until
+from std_srvs.srv import Empty
 
 WORLDS = Path(__file__).resolve().parents[2] / 'src' / 'rosbots_description' / 'worlds'
 AXLE = 0.15, 0.0725  # middle of the axle in base_footprint [m]
@@ -45,6 +48,23 @@ class ExampleNodeTest(unittest.TestCase):
             now.time_step, rate, now.gravity, now.ode_config
         )
         self.assertTrue(done.success)
+
+    def drive(self, steps, is_over):
+        """Let the node drive, with a command every so many steps, before time goes on.
+
+        Time would not wait for a node that a busy machine lets wait.
+        """
+        commands = []
+        subscriber = rospy.Subscriber(COMMANDS, Twist, commands.append)
+        wait_until(lambda: commands, 'a command', LIMIT)
+        proxy('pause_physics', Empty)()
+        step = proxy('step', Step)
+        while not is_over():
+            heard = len(commands)
+            self.assertTrue(step(steps).success)
+            wait_until(lambda heard=heard: len(commands) > heard, 'a command', LIMIT)
+        subscriber.unregister()
+        proxy('unpause_physics', Empty)()
 
     def seconds(self):
         """Return how long the track is [s], simulated time."""

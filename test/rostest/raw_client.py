@@ -7,6 +7,7 @@ from urllib.parse import urlparse
 
 import rosgraph
 from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
+from simulator import DEADLINE
 
 BUFFER = 4096  # [bytes]
 
@@ -17,7 +18,7 @@ def connection(receive_buffer=None, master=None):
     made = socket.socket()
     if receive_buffer:
         made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-    made.settimeout(30.0)
+    made.settimeout(2 * DEADLINE)
     made.connect((urlparse(uri).hostname, urlparse(uri).port))
     return made
 

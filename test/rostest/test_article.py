@@ -78,8 +78,12 @@ class ArticleTest(unittest.TestCase):
     def press(self, teleop, key, quantity, sign):
         """Press a key, wait until the robot has moved in the right direction, and stop it."""
         start = quantity(self.state())
-        teleop.type(key)
-        wait_until(lambda: sign * (quantity(self.state()) - start) > MOVED, f'motion by {key!r}')
+
+        def moves():
+            teleop.type(key)  # held, as a terminal repeats it
+            return sign * (quantity(self.state()) - start) > MOVED
+
+        wait_until(moves, f'motion by {key!r}')
         teleop.type('k')
         wait_until(
             lambda: (

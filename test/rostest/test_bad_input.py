@@ -124,7 +124,7 @@ class BadInputTest(SimulatorTest):
         properties = proxy('get_model_properties', GetModelProperties)('half')
         self.assertEqual((properties.body_names, properties.joint_names), (['base'], []))
         unturnable = BOX.replace('ixx="1" iyy="1" izz="1"', 'ixx="0" iyy="0" izz="0"')
-        self.assertTrue(self.spawn('stiff', unturnable, pose(x=8.0)).success)
+        self.assertTrue(self.spawn('stiff', unturnable, pose(x=8.0, z=1.0)).success)
         wait_until(lambda: self.model_state('stiff', '').pose.position.z < 0.502, 'the box at rest')
         self._assert_neighbour_drives()
 

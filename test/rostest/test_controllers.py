@@ -198,7 +198,8 @@ class ManagersTest(ControllersTest):
         self.assertTrue(self.switch(start=[JSC]))
         unspawner = self.start('unspawner', JSC)
         wait_until(lambda: self.states() == {JSC: 'stopped'}, 'the controller to stop')
-        self._clean()
+        self.pause()  # it looks for the manager every 3 s of simulated time: not while that goes
+        self.assertTrue(self.delete('robot').success)
         wait_until(lambda: not managers(), 'the services to go')
         unspawner.send_signal(signal.SIGINT)
         self.assertIn('the controllers were not started again: service', said_by(unspawner))

@@ -164,7 +164,7 @@ class GzwebTest(unittest.TestCase):
     def change_a_ball(self, browser):
         browser.click('ball')
         browser.wait_until(lambda: f'{LINK}/selected' in browser.nodes)
-        browser.wait_until(lambda: browser.value('Mass [kg]') == 1.0)  # the fields are filled in
+        browser.wait_until(lambda: '/gizmo' in browser.nodes)  # made after the fields are filled in
         browser.choose('Position [m]', [2.0, 1.0, 4.0])
         browser.click('Set pose')
         browser.wait_until(lambda: browser.nodes[LINK][1][:2] == [2.0, 1.0])
@@ -343,6 +343,9 @@ class GzwebTest(unittest.TestCase):
                         lambda browser=browser, name=name: f'<b>{name}</b>' in browser.tables()
                     )
                 self.assertEqual(self.selected(first), {'/models/ball/body/selected'})
+                second.wait_until(
+                    lambda: '/gizmo' in second.nodes
+                )  # after the fields are filled in
                 second.choose('Mass [kg]', 2.5)
                 second.click('Set mass')
                 mass = proxy('get_link_properties', GetLinkProperties)

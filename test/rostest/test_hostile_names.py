@@ -24,6 +24,7 @@ import rostest
 from gazebo_msgs.msg import ContactsState, ContactState
 from gazebo_msgs.srv import DeleteLight, SpawnModel
 from geometry_msgs.msg import Twist, Vector3
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from sensor_msgs.msg import Imu
@@ -256,7 +257,14 @@ class HostileNamesTest(unittest.TestCase):
         ]
 
     def open_tab(self, name):
-        self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title="{name}"]').click()
+        self.wait(lambda: self._has_opened(name), f'the tab {name}')
+
+    def _has_opened(self, name):
+        with contextlib.suppress(StaleElementReferenceException):
+            tab = self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title="{name}"]')
+            tab.click()
+            return tab.get_attribute('aria-selected') == 'true'
+        return False
 
     def test_models_and_their_links(self):
         self.open_tab('Models')

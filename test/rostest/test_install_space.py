@@ -85,13 +85,17 @@ class InstallSpaceTest(unittest.TestCase):
     def test_robot_can_be_driven(self):
         launched = self.start('roslaunch rosbots_description simulation.launch gui:=false')
         try:
+            for line in launched.stdout:
+                if 'Successfully spawned entity' in line:
+                    break
+            else:
+                self.fail('nothing was spawned')
             rospy.wait_for_service('/gazebo/get_model_state', PATIENCE)
             state = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)
             wait_until(lambda: state('rosbots', '').pose.position.z < -0.11, 'the robot', PATIENCE)
         finally:
             os.killpg(launched.pid, signal.SIGINT)
-            printed, _ = launched.communicate(timeout=PATIENCE)
-        self.assertIn('Successfully spawned entity', printed)
+            launched.communicate(timeout=PATIENCE)
 
 
 if __name__ == '__main__':

@@ -8,11 +8,12 @@ import numpy as np
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
-from example_nodes import LIMIT, WORLDS, ExampleNodeTest
-from simulator import DEADLINE, wait_until
+from example_nodes import WORLDS, ExampleNodeTest
+from simulator import DEADLINE
 
 INSIDE = 0.0, 1.2  # a point that the line goes round [m]
 PICTURES = 10.0  # [Hz]
+PICTURE = 100  # steps
 # Of the axle's middle to that of the line, at most [m]. The camera is 0.04 m beside it, and sees a
 # bend 0.7 m before the axle reaches it.
 CLOSE = 0.15
@@ -36,8 +37,7 @@ class LineFollowerTest(ExampleNodeTest):
     def test_the_robot_follows_the_line_for_a_lap_and_stops_with_the_node(self):
         camera = Client('/camera1', DEADLINE)  # unthrottled, the simulator draws every picture
         camera.update_configuration({'imager_rate': PICTURES})
-        self.limit_rate(0)
-        wait_until(lambda: self.laps() >= 1, 'one lap', LIMIT)
+        self.drive(PICTURE, lambda: self.laps() >= 1)
         self.kill_and_expect_rest('/line_follower')
         centres, directions, lengths = pieces()
         track = self.axle_track()[:, None, 1:] - centres

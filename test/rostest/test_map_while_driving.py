@@ -7,12 +7,9 @@ from xml.etree import ElementTree
 import numpy as np
 import rospy
 import rostest
-from example_nodes import LIMIT, WORLDS, ExampleNodeTest
-from geometry_msgs.msg import Twist
+from example_nodes import WORLDS, ExampleNodeTest
 from nav_msgs.msg import OccupancyGrid
-from rosbots_msgs.srv import Step
-from simulator import COMMANDS, proxy, wait_until
-from std_srvs.srv import Empty
+from simulator import wait_until
 
 DURATION = 60.0  # [s]
 SCAN = 100  # steps from one scan to the next
@@ -54,7 +51,7 @@ class MapWhileDrivingTest(ExampleNodeTest):
     def test_the_robot_wanders_without_touching_and_the_map_is_right(self):
         maps = []
         rospy.Subscriber('/map', OccupancyGrid, maps.append)
-        self.drive()
+        self.drive(SCAN, lambda: self.seconds() >= DURATION)
         self.kill_and_expect_rest('/wander')
         latest = maps[-1]
         self.check_track()
@@ -62,23 +59,6 @@ class MapWhileDrivingTest(ExampleNodeTest):
         late = []  # a reader that comes late gets the map at once
         rospy.Subscriber('/map', OccupancyGrid, late.append)
         wait_until(lambda: late, 'the latched map')
-
-    def drive(self):
-        """Let the robot wander for a minute, each scan answered before time goes on.
-
-        Time would not wait for a node that a busy machine lets wait.
-        """
-        commands = []
-        subscriber = rospy.Subscriber(COMMANDS, Twist, commands.append)
-        wait_until(lambda: commands, 'a command', LIMIT)
-        proxy('pause_physics', Empty)()
-        step = proxy('step', Step)
-        while self.seconds() < DURATION:
-            heard = len(commands)
-            self.assertTrue(step(SCAN).success)
-            wait_until(lambda heard=heard: len(commands) > heard, 'a command', LIMIT)
-        subscriber.unregister()
-        proxy('unpause_physics', Empty)()
 
     def check_track(self):
         track = np.array(self.track)

@@ -65,7 +65,8 @@ class ModelPluginsTest(SimulatorTest):
         command = Twist()
         command.linear.x, command.angular.z = 0.4, 0.5
         self.sender('/cmd_vel', Twist)(command)
-        wait_until(lambda: len(states) > 40, 'two seconds of joint states')
+        heard = len(states)
+        wait_until(lambda: len(states) > heard + 40, 'two seconds of joint states')
         for topic, (frame, child, expected) in TOLD.items():
             message = received[topic][-1]
             self.assertEqual((message.header.frame_id, message.child_frame_id), (frame, child))

@@ -72,8 +72,8 @@ class NetworkTest(SimulatorTest):
     def test_performance_metrics(self):
         metrics = self.collect(METRICS, PerformanceMetrics)
         wait_until(lambda: len(metrics) > 10, 'two seconds of metrics')
-        # A busy machine may be slower, and catches up; the benchmark measures the speed.
-        self.assertTrue(0.0 < metrics[-1].real_time_factor < MOST, metrics[-1].real_time_factor)
+        # Slower on a busy machine, which catches up at once; the benchmark measures the speed.
+        wait_until(lambda: 0.0 < metrics[-1].real_time_factor < MOST, 'a real-time factor')
         self.assertEqual(metrics[-1].sensors, [])
         self.spawn('bot', SENSORS)
         self.collect('/scan', LaserScan)

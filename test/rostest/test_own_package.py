@@ -221,7 +221,8 @@ class OwnPackageTest(unittest.TestCase):
         walk.see(walk.open(f'{spawn} x:=1'), SPAWNED)
         self.assertIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
         # 8: it is driven
-        start, teleop = self._x(), walk.open(STEPS[8][0])
+        # With the key held, however slow the machine is.
+        start, teleop = self._x(), walk.open(f'{STEPS[8][0]} _key_timeout:=0')
         walk.see(teleop, 'currently:')
         walk.keys(teleop, 'i')
         walk.wait(lambda: self._x() > start + MOVED, 'motion of the robot')

@@ -35,7 +35,7 @@ class SpawnDeleteTest(SimulatorTest):
                 before = self._memory(process), self._threads(process)
         self.assertEqual(topics_of(), bare)
         self.assertLess(self._memory(process) - before[0], GROWTH)
-        self.assertLessEqual(self._threads(process), before[1] + THREADS)
+        wait_until(lambda: self._threads(process) <= before[1] + THREADS, 'threads to end')
         self.assertTrue(self.spawn().success)
         self._drive_a_bit()
 

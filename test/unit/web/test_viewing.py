@@ -168,12 +168,16 @@ ALLOWED_KEYS = {'escape', '?', 'H', 'T', 'F', 'X', 'G', 'V'}
 
 def test_only_controls_of_the_own_view_and_selection_are_allowed(viewer, site):
     allowed = site._gate._for_viewers
-    labels = {
-        props['label']
-        for number, (_, props) in viewer.controls.items()
-        if number in allowed and props['visible']
-    }
-    assert labels == ALLOWED
+
+    def labels():
+        return {
+            props['label']
+            for number, (_, props) in viewer.controls.items()
+            if number in allowed and props['visible']
+        }
+
+    viewer.wait_until(lambda: labels() >= ALLOWED)
+    assert labels() == ALLOWED
     assert {key for key, number in viewer.keys.items() if number in allowed} == ALLOWED_KEYS
 
 
@@ -188,8 +192,7 @@ def test_a_viewer_selects_for_itself(viewer, served):
     viewer.wait_until(lambda: '/models/other/link/selected' not in viewer.nodes)
     assert NODE not in viewer.nodes  # which would move the model
     owner = viewer.owner
-    owner.read(0.1)
-    assert NODE in owner.nodes
+    owner.wait_until(lambda: NODE in owner.nodes)
     assert f'{BOX}/Frames' not in owner.nodes
     assert f'{BOX}/selected' not in owner.nodes
     assert selection(page).model == 'other'
