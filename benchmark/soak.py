@@ -97,6 +97,15 @@ class Clocks:
         self.last = now
         self.messages += 1
 
+    def await_message(self) -> None:
+        """Wait for another one.
+
+        Raises:
+            TimeoutError: there was none within `PATIENCE`.
+        """
+        before = self.messages
+        wait_until(lambda: self.messages != before, 'a message on /clock')
+
 
 @dataclass(frozen=True)
 class Usage:
@@ -246,9 +255,8 @@ def soak(server: Server, seconds: float, seed: int) -> Soak:
     time.sleep(max(WARM_UP[0] * seconds, WARM_UP[1]))
     warm = usage(server)
     while time.monotonic() < end:
-        before = clocks.messages
         try:
-            wait_until(lambda before=before: clocks.messages != before, 'a message on /clock')
+            clocks.await_message()
         except TimeoutError as error:
             faults.append(f'{error}, after {clocks.last:g} s')
         time.sleep(0.1)

@@ -345,11 +345,19 @@ class ChromiumTest(unittest.TestCase):
 
     def wait_for_the_robot(self, page):
         reference = np.asarray(Image.open(REFERENCE), float)
-        wait_until(
-            lambda: structural_similarity(page.picture()[ROBOT], reference) >= ALIKE,
-            f'a picture that is like the reference by {ALIKE}',
-            SLOW,
-        )
+        seen = []
+
+        def is_alike():
+            seen[:] = [page.picture()]
+            return structural_similarity(seen[0][ROBOT], reference) >= ALIKE
+
+        try:
+            wait_until(is_alike, f'a picture that is like the reference by {ALIKE}', SLOW)
+        except AssertionError:
+            Image.fromarray(seen[0].astype(np.uint8)).save(
+                Path(os.environ['ROS_LOG_DIR'], 'unlike.png')
+            )
+            raise
 
     def addresses(self, log):
         """Return what the page, its parts included, has asked for, by Chromium's network log."""
