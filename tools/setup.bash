@@ -36,7 +36,6 @@ mark_all_done() {
 choose_sets() {
   find_platform
   with_included "$@"
-  PYTHON=$(readlink -f /usr/bin/python3 || true)
   LISTS=$(cat "$REQUIREMENTS"/* "$ROOT"/tools/pybullet_build/*.* <(echo "$DEBIAN $ARCHITECTURE") |
     sha256sum)
 }

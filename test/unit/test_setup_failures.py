@@ -84,6 +84,18 @@ def test_other_systems_with_all_packages_are_welcome(tmp_path):
     assert set_up('DEBIAN=; missing_packages() { :; }; set_up_packages', tmp_path) == (0, '')
 
 
+def test_environment_is_of_the_interpreter_that_the_packages_brought(tmp_path):
+    """Else the next command would make it anew: before them, a bare machine has no Python."""
+    code, errors = set_up(
+        'readlink() { echo /usr/bin/python3.99; }; phase() { :; }; '
+        'pybullet_wheel() { echo "$WORKSPACE"; }; set_up_python; '
+        'mark_all_done python "$(python_fingerprint)"; '
+        'grep --quiet --fixed-strings python3.99 "$WORKSPACE"/stamps/{venv,python.base}',
+        tmp_path,
+    )
+    assert (code, errors) == (0, '')
+
+
 def test_installation_that_apt_get_does_not_complete_is_an_error(tmp_path):
     code, errors = set_up(
         'DEBIAN=13; sudo() { :; }; phase() { :; }; amount() { :; }; '

@@ -2,8 +2,11 @@
 #
 # Debian's own packages show through; pip adds what Debian lacks.
 
+# Its path has the version. Asked anew each time: a bare machine has none before its packages.
+interpreter() { readlink -f /usr/bin/python3 || true; }
+
 # shellcheck disable=SC2153  # LISTS is set by choose_sets
-python_fingerprint() { echo "$LISTS $PYTHON $WORKSPACE"; }
+python_fingerprint() { echo "$LISTS $(interpreter) $WORKSPACE"; }
 
 # The folder of wheels made here, which all clones share.
 wheel_cache() {
@@ -40,9 +43,9 @@ install_python() {
 }
 
 set_up_python() {
-  if [[ ! -x $WORKSPACE/venv/bin/pip ]] || ! is_done venv "$PYTHON $WORKSPACE"; then
+  if [[ ! -x $WORKSPACE/venv/bin/pip ]] || ! is_done venv "$(interpreter) $WORKSPACE"; then
     phase 'Python environment' venv make_environment
-    mark_done venv "$PYTHON $WORKSPACE"
+    mark_done venv "$(interpreter) $WORKSPACE"
   fi
   if [[ ! -f $(pybullet_wheel --path) ]]; then
     phase "$(pybullet_wheel --title)" pybullet pybullet_wheel
