@@ -257,7 +257,8 @@ class ControllerTopicsTest(ControllersTest):
             ]
             client.send_goal(goal, feedback_cb=feedback.append)
             if wait:
-                wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, 'result')
+                # The goal's own state: SimpleActionClient misses a result that comes at once.
+                wait_until(lambda: client.gh.get_comm_state() == actionlib.CommState.DONE, 'result')
             result = client.get_result()
             return (client.get_state(), result.error_code, result.error_string) if wait else None
 

@@ -165,15 +165,16 @@ class MasterRestartTest(unittest.TestCase):
 
     def _assert_it_works(self):
         self.assertIn('rosbots', self.server.world().model_names)
-        self._run(
-            'rostopic',
-            'pub',
-            '-1',
-            '/part2_cmr/cmd_vel',
-            'geometry_msgs/Twist',
-            '{linear: {x: 0.3}}',
-        )
-        wait_until(lambda: self._x() > 0.1, 'a drive')
+        drive = ['rostopic', 'pub', '-r', '10', '/part2_cmr/cmd_vel', 'geometry_msgs/Twist']
+        with subprocess.Popen(
+            [*drive, '{linear: {x: 0.3}}'],
+            env=self.server.environment,
+            stdout=subprocess.DEVNULL,
+        ) as driving:
+            try:
+                wait_until(lambda: self._x() > 0.1, 'a drive')
+            finally:
+                driving.terminate()
         self.assertIn('odom', self._run('rostopic', 'echo', '-n1', '/odom'))
         self._spawn('box', BOX)
         code, printed = self.server.end()

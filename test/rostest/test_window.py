@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from contextlib import suppress
 from pathlib import Path
 from xmlrpc.client import ServerProxy
 
@@ -23,6 +24,8 @@ from simulator import BOX, GROUND, pose, proxy, wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
+
+from rosbots_description.cli.launched import descendants
 
 STEP = 90.0  # [s, wall] timeout of the start of a program
 GONE, BACK = 'gzclient: the simulator has ended', 'gzclient: the simulator is running again'
@@ -94,6 +97,16 @@ class WindowTest(unittest.TestCase):
         uri = rospy.get_master().lookupNode(node)[2]
         return ServerProxy(uri).getPid('/test')[2]
 
+    @staticmethod
+    def rviz_of(terminal):
+        """Return the process ids of RViz below a terminal."""
+        found = []
+        for process in descendants(terminal.process.pid):
+            with suppress(OSError):  # it has ended
+                if Path(f'/proc/{process}/comm').read_text() == 'rviz\n':
+                    found.append(process)
+        return found
+
     def see(self, terminal, text):
         wait_until(lambda: text in terminal.shown(), text, STEP)
 
@@ -115,8 +128,8 @@ class WindowTest(unittest.TestCase):
         self.server()
         node = f'/{self._testMethodName}'
         window = self.open('gzclient', f'__name:={node[1:]}')
-        wait_until(lambda: node in rosnode.get_node_names(), 'RViz', STEP)
-        first = self.process_of(node)
+        wait_until(lambda: self.rviz_of(window), 'RViz', STEP)
+        (first,) = self.rviz_of(window)  # long before it is open, as an open one is not restarted
         os.kill(first, signal.SIGSEGV)
         self.see(window, CRASHED)
         self.wait_for_rviz(node)
