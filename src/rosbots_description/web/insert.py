@@ -161,13 +161,15 @@ class InsertPanel(Panel):
             attempt(insert, self._complain)
 
     def _remove_light(self) -> None:
-        name = self._light.value
-        light = self._lights.get(name)
-        if light is None:
-            raise SimError('there is no light')
-        text = self._library.light(light)
-        self._editor.delete(name)
-        self._history.add(f"delete '{name}'", partial(self._editor.insert, text))
+        with self._history.turn:
+            name = self._light.value
+            light = self._lights.get(name)
+            if light is None:
+                raise SimError('there is no light')
+            text = self._library.light(light)
+            self._editor.delete(name)
+            self._lights = {one: self._lights[one] for one in self._lights if one != name}
+            self._history.add(f"delete '{name}'", partial(self._editor.insert, text))
 
 
 def _offer(choice: Choice, names: Sequence[str]) -> None:
