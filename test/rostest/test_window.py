@@ -47,10 +47,15 @@ TO_SUN = np.array([0.5, -0.1, 0.9]) / np.linalg.norm([0.5, -0.1, 0.9])  # direct
 CLOSE = 8  # of 255: the image has few colours
 ENOUGH = 200  # pixels; the smallest of those faces has 350
 
+LATE_MASTER = re.compile(r'(Failed to contact|Connected to) master at \[')
+
 
 def said_by(window):
-    """Return the lines on the screen since the last start of RViz."""
-    lines = window.shown().splitlines()
+    """Return the lines on the screen since the last start of RViz.
+
+    Without those of roscpp about a master that answered late: it asks again.
+    """
+    lines = [line for line in window.shown().splitlines() if not LATE_MASTER.search(line)]
     starts = [i + 1 for i, line in enumerate(lines) if line.startswith(CRASHED)]
     return lines[max(starts, default=0) :]
 
