@@ -16,8 +16,6 @@ logger = logging.getLogger(__name__)
 
 Answer = Callable[[Server, Any], Message]
 
-REGISTRATION = 5.0  # how long a response waits for the registration of topics [s, wall]
-
 
 class CallError(SimError):
     """A request for which Gazebo fails the call itself, instead of returning success=False."""
@@ -110,12 +108,8 @@ def respond(server: Server, entry: Service, request: Message) -> Message:
         raise
     except SimError as error:
         return _failure(entry, response_class(), str(error))
-    if entry.registers and not server.registrar.wait(REGISTRATION):
-        logger.warning(
-            '%s: the ROS master has not registered all topics within %g s; it will be done later',
-            entry.name,
-            REGISTRATION,
-        )
+    if entry.registers:
+        server.registrar.await_registration(entry.name)
     return response
 
 

@@ -2,12 +2,18 @@
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 from queue import SimpleQueue
 
 import rospy
 
+from .master import AddressError, is_master_running
+
 logger = logging.getLogger(__name__)
+
+PATIENCE = 5.0  # between two looks whether a master answers [s, wall]
+LONGEST = 60.0  # time for registrations, on a busy machine [s, wall]
 
 
 class Registrar:
@@ -27,6 +33,20 @@ class Registrar:
         self.post(done.set)
         return done.wait(deadline)
 
+    def await_registration(self, name: str) -> None:
+        """Wait until all queued jobs are done; not where no master answers, which is logged.
+
+        Args:
+            name: of what waits.
+        """
+        end = time.monotonic() + LONGEST
+        while not self.wait(PATIENCE):
+            if time.monotonic() > end or not _has_master():
+                logger.warning(
+                    '%s: the ROS master has not registered all topics; it will be done later', name
+                )
+                return
+
     def _work(self) -> None:
         while True:
             job = self._jobs.get()
@@ -36,3 +56,10 @@ class Registrar:
                 return
             except Exception:
                 logger.exception('a registration with the ROS master failed')
+
+
+def _has_master() -> bool:
+    try:
+        return is_master_running(rospy.get_name())
+    except AddressError:  # it stands still
+        return False

@@ -45,7 +45,6 @@ from ...transport import is_valid_name, read_parameter, topic_name
 
 logger = logging.getLogger(__name__)
 
-REGISTRATION = 5.0  # how long a response waits for the registration of topics [s, wall]
 STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT
 BASE = 'controller_interface::ControllerBase'
 
@@ -125,12 +124,7 @@ class ManagerServices:
             for sentence in error.sentences:
                 logger.error('%s', sentence)
             return False
-        if not self._server.registrar.wait(REGISTRATION):
-            logger.warning(
-                'the ROS master has not registered all topics of controllers within '
-                '%g s; it will be done later',
-                REGISTRATION,
-            )
+        self._server.registrar.await_registration('controller_manager')
         return True
 
     def _list(self, _request: ListControllersRequest) -> ListControllersResponse:
