@@ -68,7 +68,7 @@ class Bench:
 
     def __init__(self, world: World) -> None:
         self.world = world
-        registrar = SimpleNamespace(wait=lambda _deadline: True)
+        registrar = SimpleNamespace(await_registration=lambda _name: None)
         loop = SimpleNamespace(
             **dict.fromkeys(('call', 'post', 'run_in_thread'), lambda command: command())
         )
