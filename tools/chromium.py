@@ -3,11 +3,13 @@
 import base64
 import io
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from PIL import Image
 from selenium import webdriver
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
 
 OPTIONS = [
     '--headless=new',
@@ -111,6 +113,15 @@ def drawn(driver: webdriver.Chrome) -> None:
 def clock(driver: webdriver.Chrome) -> str:
     """Return the simulated time that the window's page shows, as hours:minutes:seconds, or ''."""
     return str(driver.execute_script(CLOCK))
+
+
+def opens_tab(driver: webdriver.Chrome, name: str) -> bool:
+    """Press a tab; tell whether it is open: it may move away as the page fills."""
+    with suppress(StaleElementReferenceException):
+        tab = driver.find_element(By.CSS_SELECTOR, f'[role=tab][title="{name}"]')
+        tab.click()
+        return tab.get_attribute('aria-selected') == 'true'
+    return False
 
 
 def faults(driver: webdriver.Chrome) -> list[str]:

@@ -24,7 +24,6 @@ import rostest
 from gazebo_msgs.msg import ContactsState, ContactState
 from gazebo_msgs.srv import DeleteLight, SpawnModel
 from geometry_msgs.msg import Twist, Vector3
-from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from sensor_msgs.msg import Imu
@@ -34,7 +33,7 @@ from std_msgs.msg import Float64
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 sys.path.append(str(Path(__file__).resolve().parents[2] / 'tools'))
-from chromium import chromium, clock, drawn, faults
+from chromium import chromium, clock, drawn, faults, opens_tab
 from hostile_page import Listener, arm, body, recorded, topic, watch
 from support.browser import Browser
 from support.hostile_texts import HOST, MARK, TEXTS
@@ -257,14 +256,7 @@ class HostileNamesTest(unittest.TestCase):
         ]
 
     def open_tab(self, name):
-        self.wait(lambda: self._has_opened(name), f'the tab {name}')
-
-    def _has_opened(self, name):
-        with contextlib.suppress(StaleElementReferenceException):
-            tab = self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title="{name}"]')
-            tab.click()
-            return tab.get_attribute('aria-selected') == 'true'
-        return False
+        self.wait(lambda: opens_tab(self.driver, name), f'the tab {name}')
 
     def test_models_and_their_links(self):
         self.open_tab('Models')

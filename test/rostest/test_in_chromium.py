@@ -42,7 +42,7 @@ from rosbots_description.cli.launched import descendants
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 sys.path.append(str(Path(__file__).resolve().parents[2] / 'tools'))
-from chromium import chromium, clock, faults, picture
+from chromium import chromium, clock, faults, opens_tab, picture
 from support.similarity import structural_similarity
 
 REFERENCE = Path(__file__).resolve().parents[1] / 'data' / 'web' / 'robot.png'
@@ -134,15 +134,7 @@ class Page:
         return self.driver.find_element(By.XPATH, button)
 
     def open_tab(self, name):
-        """Press a tab until it is open: it, too, moves as the page fills."""
-        wait_until(lambda: self._has_opened(name), f'the tab {name}', SLOW)
-
-    def _has_opened(self, name):
-        with suppress(StaleElementReferenceException):
-            tab = self.driver.find_element(By.CSS_SELECTOR, f'[role=tab][title={name}]')
-            tab.click()
-            return tab.get_attribute('aria-selected') == 'true'
-        return False
+        wait_until(lambda: opens_tab(self.driver, name), f'the tab {name}', SLOW)
 
     def select(self, eye, model, point):
         """Click on a model where a point of it [m] is seen; once, as two clicks may be a double."""
