@@ -13,6 +13,8 @@ from rospy.impl import registration, tcpros_base, tcpros_service
 from rospy.impl.tcpros_pubsub import TCPROSSub
 from rospy.rostime import _set_rostime
 
+from rosbots_description.ros_api.transport import registrations
+
 CALLED = {  # by us, or by rospy where we replace a function
     rospy.topics.QueuedConnection: 'connection queue_size',
     rospy.topics.QueuedConnection.write_data: 'self data',
@@ -99,7 +101,9 @@ def test_names_that_we_use_exist_in_rospy(function, name):
     assert name in function.__code__.co_names
 
 
-def test_a_topic_is_listed_with_its_type():
+def test_a_topic_is_listed_with_its_type(monkeypatch):
     manager = type(registration.get_topic_manager())()
+    monkeypatch.setattr(registrations, 'get_topic_manager', lambda: manager)
     manager.pubs['/t'] = rospy.topics._PublisherImpl('/t', rospy.AnyMsg)
-    assert manager.pubs['/t'].type == rospy.AnyMsg._type
+    assert registrations.published_types() == {'/t': rospy.AnyMsg._type}
+    assert registrations.subscribed_types() == {}
