@@ -110,7 +110,7 @@ class BrowserPanels(Panel):
             panel.refresh()
 
     def close(self) -> None:
-        """End what costs the simulator anything: the browser has disconnected."""
+        """Close its panels: the browser has disconnected."""
         for panel in self._panels:
             panel.close()
 

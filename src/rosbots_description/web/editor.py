@@ -116,7 +116,7 @@ class EditorPanel(Panel):
         self._history.add(f"duplicate '{model}'", partial(self._editor.delete, name))
 
     def _delete(self, model: str) -> None:
-        self._selection.choose(None)  # nobody asks for it any more, or deletes it again
+        self._selection.choose(None)  # its state is polled no more, and a second press does nothing
         text = self._editor.describe(model)
         self._editor.delete(model)
         self._history.add(f"delete '{model}'", partial(self._editor.insert, text))

@@ -1,4 +1,4 @@
-"""What the tasks have in common: the robot of the article, and no touching of what stands."""
+"""Base class of the tasks: the article's robot, an episode of which ends at a collision."""
 
 import math
 from collections.abc import Mapping
