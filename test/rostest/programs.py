@@ -1,10 +1,14 @@
 """Programs of packages: where they are, and what they print."""
 
 import os
+import subprocess
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 from roslib.packages import find_node
+
+HOPELESS = 60.0  # [s, wall] for a program that was told to end
 
 
 @cache
@@ -13,6 +17,20 @@ def find_program(package, name):
     found = find_node(package, name)
     assert found, f'no program {name} in {package}'
     return found[0]
+
+
+def end(process):
+    """End a program, if it still runs, so that it takes leave of the ROS master.
+
+    Of a killed one the master keeps the address. When its name is registered again, the master
+    shuts down whatever program has that address by then, perhaps one of another test.
+    """
+    if process.poll() is None:
+        process.terminate()
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(HOPELESS)
+        process.kill()
+    process.wait()
 
 
 def keep(printed, name, process):

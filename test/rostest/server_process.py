@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rosgraph
 from gazebo_msgs.srv import GetWorldProperties
-from programs import find_program, keep
+from programs import end, find_program, keep
 from raw_client import answer, request_bytes, service_connection
 from simulator import DEADLINE, SimulatorTest, wait_until
 
@@ -48,9 +48,7 @@ class ServerProcess:
         return self
 
     def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.wait()
+        end(self.process)
         self.process.stdin.close()
         if not self.process.stdout.closed:
             os.set_blocking(self.process.stdout.fileno(), False)  # its children may have it open

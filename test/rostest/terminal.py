@@ -8,7 +8,7 @@ import termios
 import threading
 from pathlib import Path
 
-from programs import keep
+from programs import end, keep
 
 
 class Terminal:
@@ -56,9 +56,7 @@ class Terminal:
         return termios.tcgetattr(self._screen)
 
     def close(self):
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
+        end(self.process)
         os.close(self._closing)
         self._reader.join()
         keep(self.shown(), Path(self.process.args[0]).name, self.process)

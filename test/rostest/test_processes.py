@@ -14,7 +14,7 @@ import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from network import services_of
-from programs import find_program
+from programs import end, find_program
 from rosgraph_msgs.msg import Clock
 from simulator import BOX, DEADLINE, hears, pose, proxy, topics_of, wait_until
 from std_srvs.srv import Empty
@@ -30,9 +30,7 @@ class ProcessTest(unittest.TestCase):
 
     def tearDown(self):
         for process in self._started:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
+            end(process)
             process.stdout.close()
         wait_until(lambda: not self._registered(), 'the simulator being unregistered')
 

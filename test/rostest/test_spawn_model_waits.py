@@ -12,7 +12,7 @@ import unittest
 import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
-from programs import find_program
+from programs import end, find_program
 from simulator import DEADLINE
 
 
@@ -26,9 +26,7 @@ class SpawnModelTest(unittest.TestCase):
         self._services = []
 
     def tearDown(self):
-        if self._process.poll() is None:
-            self._process.kill()
-        self._process.wait()
+        end(self._process)
         self._process.stdout.close()
         for service in self._services:
             service.shutdown()
