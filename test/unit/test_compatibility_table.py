@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import pytest
 import rospy
 from support import ROOT
+from support.compatibility import rows
 
 from rosbots_description.cli.gz import NOT_HERE, parser
 from rosbots_description.ros_api.node import node
@@ -26,13 +27,6 @@ EMPTY_WORLD = ROOT / 'companions' / 'gazebo_ros' / 'launch' / 'empty_world.launc
 OFFERED = ('same', 'better', 'ours')
 MISSING = 'not supported'
 OF_EVERY_NODE = {'/gazebo/get_loggers', '/gazebo/set_logger_level'}  # rospy's own services
-
-
-def rows(section):
-    """Return (name, state, remark) of each row of the table below a heading."""
-    text = TABLE.read_text(encoding='utf-8').split(f'\n## {section}\n')[1].split('\n## ')[0]
-    cells = [line.strip('|').split('|') for line in text.splitlines() if line.startswith('| `')]
-    return [(name.strip(' `'), state.strip(), how.strip()) for name, state, how in cells]
 
 
 def table(section):

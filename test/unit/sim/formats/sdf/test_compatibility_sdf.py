@@ -6,6 +6,7 @@ import re
 import pytest
 from lxml import etree
 from support import ROOT
+from support.compatibility import rows
 
 from rosbots_description.sim.formats.sdf import joints
 from rosbots_description.sim.formats.sdf.omissions import Notes
@@ -77,14 +78,6 @@ WORLD = """<sdf version="1.6"><world name="w"><gravity>0 0 -9</gravity><frame na
 
 COLOUR = '1 0 0 1'
 VALUES = {'ambient': COLOUR, 'background': COLOUR, 'fdir1': '1 0 0'}  # the value of others is 3
-
-
-def rows():
-    """Return (name, state, remark) of each row of the table below its heading."""
-    text = (ROOT / 'doc' / 'gazebo_compatibility.md').read_text(encoding='utf-8')
-    lines = text.split('\n## SDF elements\n')[1].split('\n## ')[0].splitlines()
-    cells = [line.strip('|').split('|') for line in lines if line.startswith('| `')]
-    return [(name.strip(' `'), state.strip(), how.strip()) for name, state, how in cells]
 
 
 def row_name(path):
@@ -162,7 +155,7 @@ def world_with(path):
     return etree.tostring(root)
 
 
-ROWS = rows()
+ROWS = rows('SDF elements')
 ELEMENTS = [row for row in ROWS if ' type=' not in row[0]]
 TYPES = {name.split('"')[1]: state for name, state, _ in ROWS if ' type=' in name}
 SUPPORTED = {name for name, state, _ in ELEMENTS if state != MISSING}
