@@ -2,36 +2,21 @@
 
 import math
 import re
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 import pytest
+from support import robot_spec
+from support.urdf import INERTIAL, joint, link
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.description.inertia import tensor
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.xacro_module import import_xacro
 
-ROOT = Path(__file__).resolve().parents[5]
 BALL = '<geometry><sphere radius="1"/></geometry>'
-
-
-def mass(kilograms):
-    return (
-        f'<inertial><mass value="{kilograms}"/>'
-        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-    )
-
-
-def link(name, kilograms=1.0, shapes=''):
-    return f'<link name="{name}">{mass(kilograms) if kilograms else ""}{shapes}</link>'
-
-
-def joint(name, parent, child, kind='fixed', inside=''):
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
-        f'<child link="{child}"/>{inside}</joint>'
-    )
+COLLISION, VISUAL = f'<collision>{BALL}</collision>', f'<visual>{BALL}</visual>'
+TWO = link('a') + link('b') + joint('j', 'a', 'b', 'fixed')
+fixed = partial(joint, kind='fixed')
 
 
 def load(body):
@@ -44,13 +29,7 @@ def names(items):
 
 @pytest.fixture(scope='module')
 def article():
-    """Return the article's robot as spawned."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv('ROS_PACKAGE_PATH', str(ROOT))
-        patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
-        text = import_xacro().process_file(str(ROOT / 'urdf/rosbots.xacro'), mappings={}).toxml()
-    find = {'rosbots_description': str(ROOT)}.get
-    return load_urdf(text, 'rosbots', robot_namespace='/', find_package=find)[0]
+    return robot_spec()
 
 
 def test_the_articles_robot_has_three_links_of_1_4_kg(article):
@@ -95,15 +74,13 @@ def test_the_articles_reduced_links_have_one_parent(article):
 
 def test_shapes_are_named_and_numbered_as_in_gazebo():
     spec = load(
-        link(
-            'base', shapes=f'<collision>{BALL}</collision><collision name="own">{BALL}</collision>'
-        )
-        + link('arm', shapes=f'<collision name="pad">{BALL}</collision><visual>{BALL}</visual>')
-        + link('tip', shapes=f'<collision>{BALL}</collision><visual>{BALL}</visual>')
-        + link('base_lid', shapes=f'<collision>{BALL}</collision>')
-        + joint('a', 'base', 'arm')
-        + joint('b', 'arm', 'tip')
-        + joint('c', 'base', 'base_lid')
+        link('base', f'{INERTIAL}{COLLISION}<collision name="own">{BALL}</collision>')
+        + link('arm', f'{INERTIAL}<collision name="pad">{BALL}</collision>{VISUAL}')
+        + link('tip', INERTIAL + COLLISION + VISUAL)
+        + link('base_lid', INERTIAL + COLLISION)
+        + fixed('a', 'base', 'arm')
+        + fixed('b', 'arm', 'tip')
+        + fixed('c', 'base', 'base_lid')
     )
     assert names(spec.links[0].collisions) == [
         'base_collision',
@@ -123,11 +100,11 @@ def test_shapes_and_joints_are_transformed_into_the_parents_frame():
     spec = load(
         link('base')
         + link('arm')
-        + link('hand', shapes=f'<collision><origin xyz="1 0 0"/>{BALL}</collision>')
+        + link('hand', f'{INERTIAL}<collision><origin xyz="1 0 0"/>{BALL}</collision>')
         + link('finger')
-        + joint('a', 'base', 'arm', inside=quarter)
-        + joint('b', 'arm', 'hand', inside=quarter)
-        + joint('c', 'hand', 'finger', 'continuous', '<origin xyz="0 1 0"/>')
+        + fixed('a', 'base', 'arm', inside=quarter)
+        + fixed('b', 'arm', 'hand', inside=quarter)
+        + joint('c', 'hand', 'finger', inside='<origin xyz="0 1 0"/>')
     )
     base, finger = spec.links
     assert base.collisions[0].pose.position == pytest.approx((0.0, 1.0, 0.0))
@@ -143,9 +120,10 @@ def test_masses_in_rotated_frames_merge_by_the_parallel_axis_theorem():
     )
     spec = load(
         '<link name="base"/>'
-        + f'<link name="a">{inertial}</link><link name="b">{inertial}</link>'
-        + joint('ja', 'base', 'a')
-        + joint('jb', 'base', 'b', inside=f'<origin rpy="{math.pi / 2} 0 0" xyz="0 1 1"/>')
+        + link('a', inertial)
+        + link('b', inertial)
+        + fixed('ja', 'base', 'a')
+        + fixed('jb', 'base', 'b', inside=f'<origin rpy="{math.pi / 2} 0 0" xyz="0 1 1"/>')
     )
     merged = spec.links[0].inertial
     # Centre of b: (0 1 1) + z rotated to -y = (0 0 1); both centres coincide, y and z of b swap.
@@ -159,13 +137,13 @@ def kept(tag, joint_name='j'):
 
 
 def test_a_preserved_joint_stays_fixed():
-    spec = load(link('a') + link('b') + joint('j', 'a', 'b') + kept('preserveFixedJoint'))
+    spec = load(TWO + kept('preserveFixedJoint'))
     assert names(spec.links) == ['a', 'b']
     assert (spec.joints[0].type, spec.joints[0].parent) == ('fixed', 'a')
 
 
 def test_disabled_lumping_makes_a_joint_with_zero_range():
-    spec = load(link('a') + link('b') + joint('j', 'a', 'b') + kept('disableFixedJointLumping'))
+    spec = load(TWO + kept('disableFixedJointLumping'))
     (j,) = spec.joints
     assert (j.type, j.lower, j.upper) == ('revolute', 0.0, 0.0)
 
@@ -179,17 +157,17 @@ def test_disabled_lumping_makes_a_joint_with_zero_range():
 )
 def test_preserve_fixed_joint_takes_precedence_over_disabled_lumping(tags):
     blocks = ''.join(kept(tag) for tag in tags)
-    (j,) = load(link('a') + link('b') + joint('j', 'a', 'b') + blocks).joints
+    (j,) = load(TWO + blocks).joints
     assert j.type == 'fixed'
 
 
 def test_robot_below_world_is_fixed_and_reduced():
     spec = load(
-        link('world', 0)
+        link('world', '')
         + link('base')
         + link('arm')
-        + joint('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>')
-        + joint('j', 'base', 'arm')
+        + fixed('bolt', 'world', 'base', inside='<origin xyz="0 0 2"/>')
+        + fixed('j', 'base', 'arm')
     )
     assert names(spec.links) == ['base']
     assert spec.links[0].pose.position == (0.0, 0.0, 2.0)
@@ -198,19 +176,19 @@ def test_robot_below_world_is_fixed_and_reduced():
 
 
 def test_content_of_the_world_link_is_reported_as_not_simulated(caplog):
-    load(link('world', 0, f'<collision>{BALL}</collision>') + link('a') + joint('j', 'world', 'a'))
+    load(link('world', COLLISION) + link('a') + fixed('j', 'world', 'a'))
     assert "'world': a root of that name is the world itself" in caplog.text
 
 
 def test_movable_link_without_mass_is_left_out_with_its_descendants(caplog):
     spec = load(
         link('base')
-        + link('hub', 0)
+        + link('hub', '')
         + link('tyre')
         + link('cap')
-        + joint('a', 'base', 'hub', 'continuous')
-        + joint('b', 'hub', 'tyre', 'continuous')
-        + joint('c', 'tyre', 'cap')
+        + joint('a', 'base', 'hub')
+        + joint('b', 'hub', 'tyre')
+        + fixed('c', 'tyre', 'cap')
     )
     assert names(spec.links) == ['base']
     assert spec.joints == ()
@@ -223,10 +201,10 @@ def test_movable_link_without_mass_is_left_out_with_its_descendants(caplog):
 def test_fixed_link_without_mass_is_kept_without_its_movable_children(caplog):
     spec = load(
         link('base')
-        + link('mount', 0, f'<collision>{BALL}</collision>')
+        + link('mount', COLLISION)
         + link('wheel')
-        + joint('a', 'base', 'mount')
-        + joint('b', 'mount', 'wheel', 'continuous')
+        + fixed('a', 'base', 'mount')
+        + joint('b', 'mount', 'wheel')
     )
     assert names(spec.links) == ['base']
     assert names(spec.links[0].collisions) == ['base_fixed_joint_lump__mount_collision']
@@ -236,11 +214,11 @@ def test_fixed_link_without_mass_is_kept_without_its_movable_children(caplog):
 
 def test_root_without_mass_is_kept_if_a_fixed_child_has_mass(caplog):
     spec = load(
-        link('footprint', 0)
+        link('footprint', '')
         + link('base')
         + link('wheel')
-        + joint('a', 'footprint', 'base')
-        + joint('b', 'base', 'wheel', 'continuous')
+        + fixed('a', 'footprint', 'base')
+        + joint('b', 'base', 'wheel')
     )
     assert names(spec.links) == ['footprint', 'wheel']
     assert caplog.text == ''

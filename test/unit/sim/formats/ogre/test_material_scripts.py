@@ -1,6 +1,7 @@
 """Materials of a model's own scripts."""
 
 import pytest
+from support.urdf import INERTIAL, link
 
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
@@ -133,8 +134,7 @@ def test_a_script_of_the_resource_path_needs_no_address(model):
         find_file=find_file,
     )
     by_urdf, _ = load_urdf(
-        f'<robot name="m"><link name="l"><inertial><mass value="1"/><inertia ixx="1" ixy="0" '
-        f'ixz="0" iyy="1" iyz="0" izz="1"/></inertial>{urdf}</link><gazebo reference="l">'
+        f'<robot name="m">{link("l", INERTIAL + urdf)}<gazebo reference="l">'
         '<material>track/line</material></gazebo></robot>',
         'm',
         find_file=find_file,

@@ -4,6 +4,7 @@ from dataclasses import fields, is_dataclass, replace
 
 import pytest
 from support import ROOT
+from support.urdf import INERTIAL
 
 from rosbots_description.sim import Pose, from_rpy
 from rosbots_description.sim.core import rotate
@@ -28,7 +29,6 @@ RECORDED = ROOT / 'test' / 'data' / 'gazebo'
 ROBOTS = sorted([*RECORDED.glob('robots/*.urdf'), *RECORDED.glob('sensors/robots/*.urdf')])
 # Where it was read, and what a URDF has lost by its conversion to SDF.
 NOT_WRITTEN = {'line', 'location', 'reduced', 'nested', 'left_out'}
-INERTIAL = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 VISUAL = '<visual><geometry><box size="1 2 3"/></geometry>{}</visual>'
 COLOUR = '<material name="m"><color rgba="{}"/></material>'
 FIND = {'rosbots_description': str(ROOT)}.get

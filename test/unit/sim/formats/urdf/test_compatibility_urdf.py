@@ -3,23 +3,20 @@
 import logging
 
 import pytest
-from support import ROOT
+from support.compatibility import rows
+from support.urdf import INERTIAL, joint, link
 
 from rosbots_description.sim.formats.urdf import gazebo_tags, link_tags
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 
 MISSING = 'not supported'
-INERTIAL = (
-    '<inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-)
 SHAPES = ''.join(
     f'<{tag}><geometry><sphere radius="1"/></geometry></{tag}>' for tag in ('collision', 'visual')
 )
-ROBOT = f"""<robot name="r"><link name="a">{INERTIAL}{SHAPES}</link><link name="b">{INERTIAL}</link>
-<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
-<link name="c">{INERTIAL}</link>
-<joint name="turning" type="continuous"><parent link="a"/><child link="c"/></joint>"""
+ROBOT = (
+    f'<robot name="r">{link("a", INERTIAL + SHAPES)}{link("b")}{link("c")}'
+    f'{joint("j", "a", "b", "fixed")}{joint("turning", "a", "c")}'
+)
 VALUES = (
     dict.fromkeys(('diffuse', 'ambient'), '1 0 0 1')
     | dict.fromkeys(('material', 'name'), 'Gazebo/Red')
@@ -31,15 +28,7 @@ VALUES = (
 )
 
 
-def rows():
-    """Return (name, state, remark) of each row of the table below its heading."""
-    text = (ROOT / 'doc' / 'gazebo_compatibility.md').read_text(encoding='utf-8')
-    lines = text.split('\n## URDF gazebo elements\n')[1].split('\n## ')[0].splitlines()
-    cells = [line.strip('|').split('|') for line in lines if line.startswith('| `')]
-    return [(name.strip(' `'), state.strip(), how.strip()) for name, state, how in cells]
-
-
-ROWS = rows()
+ROWS = rows('URDF gazebo elements')
 
 
 def robot(path):

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from support.urdf import INERTIAL, joint, link
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import to_rpy
@@ -12,17 +13,12 @@ from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 
 GREY = (0.7, 0.7, 0.7, 1.0)
 BALL = '<geometry><sphere radius="1"/></geometry>'
-INERTIAL = (
-    '<inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-)
 FULL = f'{INERTIAL}<collision>{BALL}</collision><visual>{BALL}</visual>'
 # b is at x = 1 m in a, rotated left by 90 degrees; c moves on b.
 ROBOT = (
-    f'<link name="a">{FULL}</link><link name="b">{FULL}</link><link name="c">{FULL}</link>'
-    '<joint name="ab" type="fixed"><parent link="a"/><child link="b"/>'
-    '<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/></joint>'
-    '<joint name="bc" type="continuous"><parent link="b"/><child link="c"/></joint>'
+    ''.join(link(name, FULL) for name in 'abc')
+    + joint('ab', 'a', 'b', 'fixed', '<origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>')
+    + joint('bc', 'b', 'c')
 )
 
 

@@ -4,6 +4,7 @@ import logging
 import math
 
 import pytest
+from support.urdf import INERTIAL, joint, link
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
@@ -18,10 +19,8 @@ from rosbots_description.sim.description import (
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.resources.uris import UnknownPackage
 
-MASS = (
-    '<inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-)
+TWO = link('a') + link('b')
+BALL = '<geometry><sphere radius="1"/></geometry>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 
 
@@ -30,15 +29,10 @@ def load(body, **options):
     return spec
 
 
-def link(name, inside=MASS):
-    return f'<link name="{name}">{inside}</link>'
-
-
-def joint(name, parent, child, kind='continuous', inside=''):
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/>'
-        f'<child link="{child}"/>{inside}</joint>'
-    )
+def only(kind='continuous', inside=''):
+    """Return the joint of two links."""
+    (made,) = load(TWO + joint('j', 'a', 'b', kind, inside)).joints
+    return made
 
 
 def error_message(body, **options):
@@ -51,7 +45,7 @@ def error_message(body, **options):
 
 
 def geometry(shape, name='a'):
-    return link(name, f'{MASS}<collision><geometry>{shape}</geometry></collision>')
+    return link(name, f'{INERTIAL}<collision><geometry>{shape}</geometry></collision>')
 
 
 def test_obstacle_of_the_course_loads_with_a_physical_inertia(caplog):
@@ -105,19 +99,11 @@ def test_links_are_depth_first_in_order_of_joint_names():
 
 
 def test_a_revolute_joint_has_its_limits_and_unit_axis():
-    spec = load(
-        link('a')
-        + link('b')
-        + joint(
-            'j',
-            'a',
-            'b',
-            'revolute',
-            '<axis xyz="0 3 4"/><limit lower="-1" upper="2" effort="5" velocity="6"/>'
-            '<dynamics damping="0.1" friction="0.2"/>',
-        )
+    j = only(
+        'revolute',
+        '<axis xyz="0 3 4"/><limit lower="-1" upper="2" effort="5" velocity="6"/>'
+        '<dynamics damping="0.1" friction="0.2"/>',
     )
-    (j,) = spec.joints
     assert (j.type, j.parent, j.child, j.pose) == ('revolute', 'a', 'b', Pose())
     assert j.axis == pytest.approx((0.0, 0.6, 0.8))
     assert (j.lower, j.upper, j.effort, j.velocity) == (-1.0, 2.0, 5.0, 6.0)
@@ -125,35 +111,24 @@ def test_a_revolute_joint_has_its_limits_and_unit_axis():
 
 
 def test_continuous_joint_has_no_limits_and_axis_x_by_default():
-    (j,) = load(
-        link('a')
-        + link('b')
-        + joint('j', 'a', 'b', inside='<limit lower="-1" upper="1" effort="5" velocity="-1"/>')
-    ).joints
+    j = only(inside='<limit lower="-1" upper="1" effort="5" velocity="-1"/>')
     assert (j.lower, j.upper, j.effort, j.velocity) == (None, None, 5.0, None)
     assert j.axis == (1.0, 0.0, 0.0)
 
 
 def test_short_axis_is_normalised():
-    (j,) = load(
-        link('a') + link('b') + joint('j', 'a', 'b', inside='<axis xyz="0 0 -1e-200"/>')
-    ).joints
-    assert j.axis == (0.0, 0.0, -1.0)
+    assert only(inside='<axis xyz="0 0 -1e-200"/>').axis == (0.0, 0.0, -1.0)
 
 
 def test_reversed_limits_are_swapped_with_a_warning(caplog):
-    (j,) = load(
-        link('a')
-        + link('b')
-        + joint('j', 'a', 'b', 'prismatic', '<limit lower="2" upper="-1" effort="0" velocity="0"/>')
-    ).joints
+    j = only('prismatic', '<limit lower="2" upper="-1" effort="0" velocity="0"/>')
     assert (j.lower, j.upper, j.effort, j.velocity) == (-1.0, 2.0, 0.0, 0.0)
     assert 'the two are swapped' in caplog.text
 
 
 @pytest.mark.parametrize('kind', ['floating', 'planar'])
 def test_unconstrained_joint_leaves_its_child_free_with_a_warning(kind, caplog):
-    spec = load(link('a') + link('b') + joint('j', 'a', 'b', kind, '<origin xyz="0 0 2"/>'))
+    spec = load(TWO + joint('j', 'a', 'b', kind, '<origin xyz="0 0 2"/>'))
     assert spec.joints == ()
     assert spec.link('b').pose.position == (0.0, 0.0, 2.0)
     assert f"joint 'j': a {kind} joint imposes no constraint here" in caplog.text
@@ -161,13 +136,8 @@ def test_unconstrained_joint_leaves_its_child_free_with_a_warning(kind, caplog):
 
 def test_all_shapes_are_read():
     shapes = ['<box size="1 2 3"/>', '<sphere radius="1"/>', '<cylinder radius="1" length="2"/>']
-    spec = load(
-        link(
-            'a',
-            MASS
-            + ''.join(f'<collision><geometry>{shape}</geometry></collision>' for shape in shapes),
-        )
-    )
+    collisions = (f'<collision><geometry>{shape}</geometry></collision>' for shape in shapes)
+    spec = load(link('a', INERTIAL + ''.join(collisions)))
     assert [c.geometry for c in spec.links[0].collisions] == [
         Box((1.0, 2.0, 3.0)),
         Sphere(1.0),
@@ -201,13 +171,12 @@ def test_mesh_is_found_in_its_package_and_keeps_its_uri(tmp_path):
     ],
 )
 def test_visual_has_the_colour_of_the_urdf_or_grey(material, colour, caplog):
-    ball = '<geometry><sphere radius="1"/></geometry>'
     spec = load(
         '<material name="global"><color rgba="0.4 0.5 0.6 1"/></material>'
-        + link('a', f'{MASS}<visual>{ball}{material}</visual>')
+        + link('a', f'{INERTIAL}<visual>{BALL}{material}</visual>')
         + link(
             'b',
-            f'{MASS}<visual>{ball}<material name="of_another_link">'
+            f'{INERTIAL}<visual>{BALL}<material name="of_another_link">'
             '<color rgba="0.9 0.8 0.7 1"/></material></visual>',
         )
         + joint('j', 'a', 'b')
@@ -217,10 +186,9 @@ def test_visual_has_the_colour_of_the_urdf_or_grey(material, colour, caplog):
 
 
 def test_a_material_without_colour_is_grey_with_a_warning(caplog):
-    visual = '<visual><geometry><sphere radius="1"/></geometry><material name="bleu"/></visual>'
-    spec = load(
-        '<material name="blue"><color rgba="0 0 1 1"/></material>' + link('a', MASS + visual)
-    )
+    visual = f'<visual>{BALL}<material name="bleu"/></visual>'
+    blue = '<material name="blue"><color rgba="0 0 1 1"/></material>'
+    spec = load(blue + link('a', INERTIAL + visual))
     assert spec.links[0].visuals[0].material == Material()
     assert (
         "material 'bleu': it has no <color> anywhere; grey is shown; did you mean 'blue'?"
@@ -230,11 +198,8 @@ def test_a_material_without_colour_is_grey_with_a_warning(caplog):
 
 def test_a_mesh_without_material_keeps_its_own_colours(tmp_path):
     (tmp_path / 'm.obj').write_text(TRIANGLE)
-    spec = load(
-        link(
-            'a', MASS + f'<visual><geometry><mesh filename="{tmp_path}/m.obj"/></geometry></visual>'
-        )
-    )
+    visual = f'<visual><geometry><mesh filename="{tmp_path}/m.obj"/></geometry></visual>'
+    spec = load(link('a', INERTIAL + visual))
     assert spec.links[0].visuals[0].material is None
 
 
@@ -274,24 +239,24 @@ def test_elements_without_use_in_simulation_are_not_reported(caplog):
         ('', 'the model has no <link>'),
         (link('a') + link('a'), "the link 'a' is already defined in line 1"),
         (
-            link('a') + link('b') + link('c') + joint('j', 'a', 'b') + joint('j', 'a', 'c'),
+            TWO + link('c') + joint('j', 'a', 'b') + joint('j', 'a', 'c'),
             "joint 'j': the joint 'j' is already defined in line 1",
         ),
         (
-            link('a') + link('b'),
+            TWO,
             "2 links are not the child of any joint: 'a' (line 1), 'b' (line 1)",
         ),
         (
-            link('a') + link('b') + joint('j', 'a', 'b') + joint('k', 'b', 'a'),
+            TWO + joint('j', 'a', 'b') + joint('k', 'b', 'a'),
             "joint 'j': the joints form a loop; one link must have no parent joint",
         ),
         (
-            link('a') + link('b') + link('c') + joint('j', 'b', 'c') + joint('k', 'c', 'b'),
+            TWO + link('c') + joint('j', 'b', 'c') + joint('k', 'c', 'b'),
             "the joints of 'b', 'c' form a loop that is not connected to the root 'a'",
         ),
         (link('a') + joint('j', 'a', 'a'), 'the joints form a loop'),
         (
-            link('a') + link('b') + link('c') + joint('j', 'a', 'c') + joint('k', 'b', 'c'),
+            TWO + link('c') + joint('j', 'a', 'c') + joint('k', 'b', 'c'),
             "joint 'k': child link 'c' is already the child of joint 'j' (line 1)",
         ),
         (
@@ -311,13 +276,13 @@ def test_elements_without_use_in_simulation_are_not_reported(caplog):
             "joint 'j': it has no child link; add <child link=",
         ),
         (
-            link('a') + link('b') + joint('j', 'a', 'b', 'hinge'),
+            TWO + joint('j', 'a', 'b', 'hinge'),
             "type 'hinge' is unknown; there are revolute",
         ),
-        (link('a') + link('b') + joint('j', 'a', 'b', ''), 'it has no type; there are revolute'),
+        (TWO + joint('j', 'a', 'b', ''), 'it has no type; there are revolute'),
         ('<link/>', 'a <link> without name'),
         (link('n' * 1001), 'its name has 1001 characters; at most 1000'),
-        (link('a') + link('b') + joint('j' * 1100, 'a', 'b'), 'its name has 1100 characters'),
+        (TWO + joint('j' * 1100, 'a', 'b'), 'its name has 1100 characters'),
     ],
 )
 def test_invalid_tree_is_rejected_with_location(body, expected):
@@ -342,14 +307,14 @@ def test_invalid_tree_is_rejected_with_location(body, expected):
     ],
 )
 def test_malformed_number_in_a_joint_is_rejected_with_location(inside, expected):
-    sentence = error_message(link('a') + link('b') + joint('j', 'a', 'b', inside=inside))
+    sentence = error_message(TWO + joint('j', 'a', 'b', inside=inside))
     assert "line 1: joint 'j': " + expected in sentence
 
 
 @pytest.mark.parametrize('kind', ['revolute', 'prismatic'])
 def test_joint_without_its_required_limits_is_rejected(kind):
     assert f'a {kind} joint needs <limit lower upper effort velocity/>' in error_message(
-        link('a') + link('b') + joint('j', 'a', 'b', kind)
+        TWO + joint('j', 'a', 'b', kind)
     )
 
 
@@ -394,7 +359,7 @@ def inertial(mass='1', **moments):
         ),
         (geometry('<mesh/>'), 'a <mesh> without filename'),
         (geometry(''), 'a <collision> without shape'),
-        (link('a', MASS + '<visual/>'), 'a <visual> without shape'),
+        (link('a', INERTIAL + '<visual/>'), 'a <visual> without shape'),
     ],
 )
 def test_invalid_part_of_a_link_is_rejected_with_location(body, expected):
@@ -437,8 +402,8 @@ def test_warning_begins_with_model_and_source(caplog):
 
 def test_long_chain_of_fixed_links_is_reduced_quickly():
     count = 5000
-    ball = '<collision><geometry><sphere radius="1"/></geometry></collision>'
-    links = link('l0') + ''.join(link(f'l{i}', ball) for i in range(1, count))
+    collision = f'<collision>{BALL}</collision>'
+    links = link('l0') + ''.join(link(f'l{i}', collision) for i in range(1, count))
     joints = ''.join(
         joint(f'j{i}', f'l{i}', f'l{i + 1}', 'fixed', '<origin xyz="0 0 1"/>')
         for i in range(count - 1)

@@ -3,6 +3,7 @@
 import logging
 
 import pytest
+from support.urdf import INERTIAL, joint, link
 
 from rosbots_description.sim import plugins  # noqa: F401  registers
 from rosbots_description.sim.description.model_spec import Box
@@ -11,12 +12,11 @@ from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.plugin_registry.gazebo_libraries import library_remark
 from rosbots_description.sim.resources.search_path import ModelSearch
 
-MASS = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 
 
 def urdf(inside='', after='', **options):
-    text = f'<robot name="r">\n<link name="a">{MASS}{inside}</link>\n{after}</robot>'
+    text = f'<robot name="r">\n{link("a", INERTIAL + inside)}\n{after}</robot>'
     return load_urdf(text, 'bot', source='bot.urdf', **options)[0]
 
 
@@ -164,10 +164,7 @@ def test_model_is_read_without_a_missing_include_and_its_joint(caplog):
 
 
 def test_links_without_mass_are_omissions():
-    spec = urdf(
-        after='<link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
-        '<child link="b"/></joint>'
-    )
+    spec = urdf(after=link('b', '') + joint('j', 'a', 'b'))
     assert spec.left_out == ("link 'b'",)
 
 
