@@ -6,30 +6,19 @@ from itertools import pairwise
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.collada import INSTANCE, collada
 from support.fuzzing import Fuzzer
 from support.mutations import damaged, damaged_bytes, damaged_lines
 
 POINTS = st.lists(st.tuples(*[st.floats(-2.0, 2.0, width=32)] * 3), min_size=4, max_size=8)
-COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit meter="{unit}"/><up_axis>Z_UP</up_axis></asset>
-<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert><diffuse>
-<color>0.2 0.4 0.6 1</color></diffuse></lambert></technique></profile_COMMON></effect>
-</library_effects>
-<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
-<library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="pa" count="{numbers}">{points}</float_array><technique_common>
-<accessor source="#pa" count="{count}" stride="3"><param name="X" type="float"/>
-<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="{faces}" material="mat"><input semantic="VERTEX" source="#v" offset="0"/>
-<p>{index}</p></triangles><polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/>
-<vcount>4</vcount><p>0 1 2 3</p></polylist></mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node><translate>0 0 1</translate>
-<rotate>0 0 1 30</rotate><node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix>
-<instance_geometry url="#g"><bind_material><technique_common>
-<instance_material symbol="mat" target="#m"/></technique_common></bind_material>
-</instance_geometry></node></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+SQUARE = (
+    '<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount>'
+    '<p>0 1 2 3</p></polylist>'
+)
+NODES = (
+    '<node><translate>0 0 1</translate><rotate>0 0 1 30</rotate><node><matrix>1 0 0 0 0 1 0 0 0 0 '
+    f'1 0 0 0 0 1</matrix>{INSTANCE}</node></node>'
+)
 
 
 def words(numbers):
@@ -47,14 +36,13 @@ def fuzzer():
 def colladas(draw):
     points = draw(POINTS)
     index = [(0, n, n + 1) for n in range(1, len(points) - 1)]
-    return COLLADA.format(
-        unit=draw(st.sampled_from(('1', '0.01', '0.0254'))),
-        count=len(points),
-        numbers=3 * len(points),
-        points=words(x for point in points for x in point),
-        faces=len(index),
-        index=words(n for face in index for n in face),
+    text = collada(
+        words(x for point in points for x in point),
+        words(n for face in index for n in face),
+        draw(st.sampled_from(('1', '0.01', '0.0254'))),
+        nodes=NODES,
     )
+    return text.replace('</triangles>', f'</triangles>{SQUARE}')
 
 
 @st.composite
@@ -73,9 +61,8 @@ def ascii_stls(draw):
         [
             'solid s',
             *(
-                f'facet normal 0 0 1\nouter loop\nvertex {words(points[0])}\nvertex '
-                f'{words(a)}\nvertex '
-                f'{words(b)}\nendloop\nendfacet'
+                f'facet normal 0 0 1\nouter loop\nvertex {words(points[0])}\n'
+                f'vertex {words(a)}\nvertex {words(b)}\nendloop\nendfacet'
                 for a, b in pairwise(points[1:])
             ),
             'endsolid s\n',

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.collada import SCENE, VERTICES, collada
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.meshes import engine_files, loader
@@ -24,40 +25,6 @@ ASCII_STL = (
     'endloop\nendfacet\nendsolid s\n'
 )
 BINARY_STL = b' ' * 80 + struct.pack('<I12fH', 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
-
-COLLADA = """<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit meter="{unit}"/><up_axis>{up}</up_axis></asset>
-<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert>
-<diffuse><color>0.2 0.4 0.6 1</color></diffuse></lambert></technique></profile_COMMON></effect>
-</library_effects>
-<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
-<library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="pa" count="9">{points}</float_array><technique_common>
-<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>
-<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="1" material="mat"><input semantic="VERTEX" source="#v" offset="0"/>
-<p>{index}</p></triangles></mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node><matrix>{matrix}</matrix>
-<instance_geometry url="#g"><bind_material><technique_common>
-<instance_material symbol="mat" target="#m"/></technique_common></bind_material>
-</instance_geometry></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
-
-VERTICES = '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>'
-IDENTITY = '1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1'
-
-
-def collada(**changes):
-    values = {
-        'unit': '1',
-        'up': 'Z_UP',
-        'points': '0 0 0 1 0 0 0 1 0',
-        'index': '0 1 2',
-        'matrix': IDENTITY,
-    }
-    return COLLADA.format(**(values | changes))
 
 
 @pytest.fixture
@@ -193,7 +160,7 @@ BROKEN = {
     'd.dae': collada(points='0 0 0 NaN 0 0 0 1 0'),
     'd2.dae': collada(points='0 0 0 inf 0 0 0 1 0'),
     'e.dae': collada(points=''),
-    'f.dae': collada().replace('<scene><instance_visual_scene url="#s"/></scene>', ''),
+    'f.dae': collada().replace(SCENE, ''),
     'g.dae': collada()[:700],
     'h.dae': 'PK\x03\x04',
     'i.dae': '',

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import pytest
+from support.collada import INSTANCE, collada
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
@@ -23,26 +24,37 @@ from rosbots_description.sim.formats.xml.values import ENDLESS_FRICTION
 from rosbots_description.sim.meshes.loader import check_mesh, read_mesh
 from rosbots_description.sim.resources.search_path import ModelSearch
 
-BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
+BOX_SHAPE = '<box><size>1 1 1</size></box>'
+BOX = f'<geometry>{BOX_SHAPE}</geometry>'
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 
 
 def load(body, version='1.6', **options):
     text = f'<sdf version="{version}"><model name="own">{body}</model></sdf>'
-    spec, _ = load_sdf(text, 'bot', source='bot.sdf', find_model=ModelSearch(), **options)
-    return spec
+    options = {'find_model': ModelSearch()} | options
+    return load_sdf(text, 'bot', source='bot.sdf', **options)[0]
 
 
 def link(inside='', name='a'):
     return f'<link name="{name}">{inside}</link>'
 
 
+def shaped(shape, more=''):
+    """Return a link with a collision."""
+    return link(f'<collision name="c"><geometry>{shape}</geometry>{more}</collision>')
+
+
+def only(inside=''):
+    """Return the link of a model that has one."""
+    return load(link(inside)).links[0]
+
+
 def collision(inside):
-    return load(link(f'<collision name="c">{inside}</collision>')).links[0].collisions[0]
+    return only(f'<collision name="c">{inside}</collision>').collisions[0]
 
 
 def visual(inside):
-    return load(link(f'<visual name="v">{inside}{BOX}</visual>')).links[0].visuals[0]
+    return only(f'<visual name="v">{inside}{BOX}</visual>').visuals[0]
 
 
 def error_message(body):
@@ -90,32 +102,23 @@ def test_the_built_in_ground_plane_is_the_one_of_the_empty_world():
 
 
 def test_default_mass_and_moments_are_one():
-    inertial = load(link()).links[0].inertial
+    inertial = only().inertial
     assert (inertial.mass, inertial.ixx, inertial.iyy, inertial.izz) == (1.0, 1.0, 1.0, 1.0)
     assert (inertial.ixy, inertial.ixz, inertial.iyz) == (0.0, 0.0, 0.0)
 
 
 def test_an_inertial_is_read_with_its_own_pose():
-    inertial = (
-        load(
-            link(
-                '<inertial><mass>2</mass><pose>0 0 0.5 0 0 '
-                '0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
-                '<izz>0.25</izz><ixy>0.01</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>'
-            )
-        )
-        .links[0]
-        .inertial
-    )
+    inertial = only(
+        '<inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose><inertia><ixx>0.1</ixx><iyy>0.2</iyy>'
+        '<izz>0.25</izz><ixy>0.01</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>'
+    ).inertial
     assert (inertial.mass, inertial.pose) == (2.0, Pose((0.0, 0.0, 0.5)))
     assert (inertial.ixx, inertial.iyy, inertial.izz, inertial.ixy) == (0.1, 0.2, 0.25, 0.01)
 
 
 def test_zero_inertia_becomes_that_of_a_ball(caplog):
-    body = link(
-        '<inertial><mass>1</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial>'
-    )
-    assert load(body).links[0].inertial.ixx > 0.0
+    inertia = '<inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia>'
+    assert only(f'<inertial>{inertia}</inertial>').inertial.ixx > 0.0
     assert "link 'a': an inertia of zero" in caplog.text
 
 
@@ -138,54 +141,36 @@ def test_a_shape_has_its_size(shape, expected):
 
 
 def test_a_plane_has_a_unit_normal():
-    body = link(
-        '<collision name="c"><geometry><plane><normal>0 0 2</normal><size>3 4</size>'
-        '</plane></geometry></collision>'
-    )
+    body = shaped('<plane><normal>0 0 2</normal><size>3 4</size></plane>')
     plane = load('<static>1</static>' + body).links[0].collisions[0].geometry
     assert plane == Plane((0.0, 0.0, 1.0), (3.0, 4.0))
 
 
 def test_plane_in_a_movable_model_is_left_out_and_reported(caplog):
-    body = link('<collision name="c"><geometry><plane/></geometry></collision>')
-    assert load(body).links[0].collisions == ()
+    assert load(shaped('<plane/>')).links[0].collisions == ()
     assert 'an infinite plane cannot move' in caplog.text
 
 
 def test_mesh_is_found_on_the_model_path_and_scaled(tmp_path):
     (tmp_path / 'chair' / 'meshes').mkdir(parents=True)
     (tmp_path / 'chair' / 'meshes' / 'seat.obj').write_text(TRIANGLE, encoding='ascii')
-    text = f'''<sdf version="1.6"><model name="m">{
-        link("""<visual name="v"><geometry><mesh>
-      <uri>model://chair/meshes/seat.obj</uri><scale>2 2 1</scale></mesh></geometry></visual>""")
-    }
-      </model></sdf>'''
-    spec, _ = load_sdf(text, 'm', find_model=ModelSearch([tmp_path]))
-    mesh = spec.links[0].visuals[0].geometry
-    assert mesh.path == str(tmp_path / 'chair' / 'meshes' / 'seat.obj')
-    assert (mesh.scale, mesh.uri) == ((2.0, 2.0, 1.0), 'model://chair/meshes/seat.obj')
-    assert spec.links[0].visuals[0].material is None
+    uri = 'model://chair/meshes/seat.obj'
+    mesh = f'<geometry><mesh><uri>{uri}</uri><scale>2 2 1</scale></mesh></geometry>'
+    body = link(f'<visual name="v">{mesh}</visual>')
+    (visual,) = load(body, find_model=ModelSearch([tmp_path])).links[0].visuals
+    assert visual.geometry.path == str(tmp_path / 'chair' / 'meshes' / 'seat.obj')
+    assert (visual.geometry.scale, visual.geometry.uri) == ((2.0, 2.0, 1.0), uri)
+    assert visual.material is None
 
 
 def test_a_mesh_without_address_is_left_out_and_the_model_stays(caplog):
-    body = link('<visual name="v"><geometry><mesh/></geometry></visual>')
-    assert load(body).links[0].visuals == ()
+    assert only('<visual name="v"><geometry><mesh/></geometry></visual>').visuals == ()
     assert 'a <mesh> without <uri>; add <uri>model://MODEL/meshes/FILE</uri>' in caplog.text
 
 
 def test_negative_limits_of_contacts_that_gazebo_writes_are_accepted():
-    surface = (
-        load(
-            link(
-                f'<collision name="c">{BOX}<surface><contact><ode><max_vel>-1</max_vel>'
-                f'<min_depth>-1'
-                '</min_depth></ode></contact></surface></collision>'
-            )
-        )
-        .links[0]
-        .collisions[0]
-        .surface
-    )
+    limits = '<max_vel>-1</max_vel><min_depth>-1</min_depth>'
+    surface = collision(f'{BOX}<surface><contact><ode>{limits}</ode></contact></surface>').surface
     assert (surface.max_vel, surface.min_depth) == (0.0, 0.0)
 
 
@@ -204,14 +189,8 @@ def load_submesh(tmp_path, name, center):
     file = tmp_path / 'two.dae'
     if not file.exists():
         file.write_text(two_triangles(), encoding='utf-8')
-    spec = load(
-        link(
-            f'<collision name="c"><geometry><mesh><uri>file://{file}</uri>'
-            f'<submesh><name>{name}</name><center>{center}</center></submesh></mesh>'
-            '</geometry></collision>'
-        )
-    )
-    return spec.links[0]
+    part = f'<submesh><name>{name}</name><center>{center}</center></submesh>'
+    return load(shaped(f'<mesh><uri>file://{file}</uri>{part}</mesh>')).links[0]
 
 
 def submesh(tmp_path, name, center):
@@ -222,20 +201,11 @@ def submesh(tmp_path, name, center):
 
 
 def two_triangles():
-    node = """<node name="{}"><translate>{} 0 0</translate>
-      <instance_geometry url="#shape"/></node>"""
-    return f"""<?xml version="1.0"?>
-      <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-      <asset><unit meter="0.01"/><up_axis>Z_UP</up_axis></asset>
-      <library_geometries><geometry id="shape"><mesh><source id="p">
-      <float_array id="f" count="9">0 0 0 100 0 0 0 200 0</float_array><technique_common>
-      <accessor source="#f" count="3" stride="3"><param name="X" type="float"/>
-      <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
-      </source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-      <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
-      </mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s">
-      {node.format('left', 1000)}{node.format('right', -1000)}</visual_scene>
-      </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+    nodes = (
+        f'<node name="{name}"><translate>{x} 0 0</translate>{INSTANCE}</node>'
+        for name, x in (('left', 1000), ('right', -1000))
+    )
+    return collada('0 0 0 100 0 0 0 200 0', unit='0.01', nodes=''.join(nodes))
 
 
 def test_submesh_is_only_one_part_of_its_file(tmp_path):
@@ -273,21 +243,12 @@ def test_unknown_submesh_is_left_out_and_a_similar_one_suggested(tmp_path, caplo
 
 @pytest.mark.parametrize('uri', ['model://../secret.dae', 'model://a/../../secret.dae'])
 def test_path_out_of_the_model_path_is_rejected(uri):
-    sentence = error_message(
-        link(f'<collision name="c"><geometry><mesh><uri>{uri}</uri></mesh></geometry></collision>')
-    )
-    assert "'..' is not accepted" in sentence
+    assert "'..' is not accepted" in error_message(shaped(f'<mesh><uri>{uri}</uri></mesh>'))
 
 
 def test_heightmap_is_reported_with_path_and_line(caplog):
-    message = warnings_of(
-        caplog,
-        '\n'
-        + link(
-            '<collision name="c"><geometry><heightmap><uri>x.png</uri></heightmap></geometry>'
-            '</collision>'
-        ),
-    )
+    shape = '<heightmap><uri>x.png</uri></heightmap>'
+    message = warnings_of(caplog, '\n' + shaped(shape))
     assert message == ['bot.sdf: not simulated: model/link/collision/geometry/heightmap (line 2)']
 
 
@@ -341,17 +302,14 @@ def test_unknown_script_is_grey_and_reported(caplog):
 
 
 def test_invisible_visual_is_left_out():
-    body = link(f'<visual name="v"><visible>0</visible>{BOX}</visual>')
-    assert load(body).links[0].visuals == ()
+    assert only(f'<visual name="v"><visible>0</visible>{BOX}</visual>').visuals == ()
 
 
 def test_flags_of_a_link_are_read():
-    made = load(
-        link(
-            '<gravity>0</gravity><self_collide>1</self_collide><kinematic>true</kinematic>'
-            '<velocity_decay><linear>0.1</linear><angular>0.2</angular></velocity_decay>'
-        )
-    ).links[0]
+    made = only(
+        '<gravity>0</gravity><self_collide>1</self_collide><kinematic>true</kinematic>'
+        '<velocity_decay><linear>0.1</linear><angular>0.2</angular></velocity_decay>'
+    )
     assert (made.gravity, made.self_collide, made.kinematic) == (False, True, True)
     assert (made.linear_damping, made.angular_damping) == (0.1, 0.2)
 
@@ -364,8 +322,7 @@ def test_self_collide_of_a_link_defaults_to_that_of_the_model():
 
 def test_duplicate_names_of_shapes_become_unique():
     shape = f'<collision name="c">{BOX}</collision>'
-    made = load(link(shape + shape)).links[0].collisions
-    assert [collision.name for collision in made] == ['c', 'c_1']
+    assert [made.name for made in only(shape + shape).collisions] == ['c', 'c_1']
 
 
 def test_sensors_and_plugins_are_kept_with_their_lines():
@@ -389,12 +346,8 @@ def test_namespace_is_given_to_plugins_without_one():
 
 
 def test_omissions_are_reported_once_with_path_and_line(caplog):
-    body = '\n'.join(
-        [
-            link('<audio_source>x</audio_source><battery>y</battery>'),
-            link('<battery>z</battery>', 'b'),
-        ]
-    )
+    body = link('<audio_source>x</audio_source><battery>y</battery>')
+    body += '\n' + link('<battery>z</battery>', 'b')
     assert warnings_of(caplog, body) == [
         'bot.sdf: not simulated: model/link/audio_source (line 1), '
         'model/link/battery (line 1 and 1 more)'
@@ -451,27 +404,11 @@ def test_a_pose_in_degrees_or_as_a_quaternion_is_understood():
         (link('<inertial><inertia><ixx>-1</ixx></inertia></inertial>'), '<ixx> is -1'),
         (link('<pose>0 0 nan 0 0 0</pose>'), 'it takes six finite numbers'),
         (link('<collision name="c"/>'), "<collision name='c'> has no shape"),
+        (shaped('<box/>'), '<box> has no <size>'),
+        (shaped('<sphere><radius>-1</radius></sphere>'), 'a size must be greater than zero'),
+        (shaped('<torus/>'), "geometry 'torus' is unknown"),
         (
-            link('<collision name="c"><geometry><box/></geometry></collision>'),
-            '<box> has no <size>',
-        ),
-        (
-            link(
-                '<collision name="c"><geometry><sphere><radius>-1</radius></sphere></geometry>'
-                '</collision>'
-            ),
-            'a size must be greater than zero',
-        ),
-        (
-            link('<collision name="c"><geometry><torus/></geometry></collision>'),
-            "geometry 'torus' is unknown",
-        ),
-        (
-            link(
-                f'<collision name="c">{BOX}<surface><contact><ode><kp>-5</kp></ode></contact>'
-                f'</surface>'
-                '</collision>'
-            ),
+            shaped(BOX_SHAPE, '<surface><contact><ode><kp>-5</kp></ode></contact></surface>'),
             '<kp> is -5; it must not be negative',
         ),
     ],
