@@ -25,6 +25,13 @@ def put(directory, name, files, offers=(('1.6', 'model.sdf'),)):
         (folder / file).write_text(text, encoding='utf-8')
 
 
+@pytest.fixture
+def cone(tmp_path):
+    """Return a folder with a model."""
+    put(tmp_path, 'cone', {'model.sdf': CONE})
+    return tmp_path
+
+
 def spawn(include, directory, name='thing'):
     """Return the world of a file with this include."""
     text = f'<sdf version="1.6"><world name="w"><include>{include}</include></world></sdf>'
@@ -46,23 +53,20 @@ def error_message(include, directory):
     return str(caught.value)
 
 
-def test_spawned_include_has_the_requested_name(tmp_path):
-    put(tmp_path, 'cone', {'model.sdf': CONE})
-    spec, _ = spawn('<uri>model://cone</uri>', tmp_path)
+def test_spawned_include_has_the_requested_name(cone):
+    spec, _ = spawn('<uri>model://cone</uri>', cone)
     assert (spec.name, [link.name for link in spec.links]) == ('thing', ['body'])
 
 
-def test_pose_of_a_spawned_include_is_that_of_the_include_only(tmp_path):
-    put(tmp_path, 'cone', {'model.sdf': CONE})
+def test_pose_of_a_spawned_include_is_that_of_the_include_only(cone):
     posed = '<uri>model://cone</uri><pose>1 0 0 0 0 0</pose>'
-    assert spawn(posed, tmp_path)[1] == Pose((1.0, 0.0, 0.0))
-    assert spawn('<uri>model://cone</uri>', tmp_path)[1] == Pose()
+    assert spawn(posed, cone)[1] == Pose((1.0, 0.0, 0.0))
+    assert spawn('<uri>model://cone</uri>', cone)[1] == Pose()
 
 
-def test_an_include_overrides_static_and_adds_plugins(tmp_path):
-    put(tmp_path, 'cone', {'model.sdf': CONE})
+def test_an_include_overrides_static_and_adds_plugins(cone):
     spec, _ = spawn(
-        '<uri>model://cone</uri><static>true</static><plugin name="p" filename="lib.so"/>', tmp_path
+        '<uri>model://cone</uri><static>true</static><plugin name="p" filename="lib.so"/>', cone
     )
     assert spec.static
     assert [plugin.filename for plugin in spec.plugins] == ['lib.so']
@@ -75,15 +79,13 @@ def test_include_can_make_a_static_model_movable(tmp_path):
     assert spec.links[0].inertial.mass == 1.0
 
 
-def test_a_model_included_in_a_model_is_posed_and_renamed_by_the_include(tmp_path):
-    put(tmp_path, 'cone', {'model.sdf': CONE})
-    spec = inside('<uri>model://cone</uri><name>left</name><pose>0 1 0 0 0 0</pose>', tmp_path)
+def test_a_model_included_in_a_model_is_posed_and_renamed_by_the_include(cone):
+    spec = inside('<uri>model://cone</uri><name>left</name><pose>0 1 0 0 0 0</pose>', cone)
     assert spec.link('left::body').pose == Pose((0.0, 1.0, 0.0))
 
 
-def test_model_included_without_pose_keeps_its_own(tmp_path):
-    put(tmp_path, 'cone', {'model.sdf': CONE})
-    assert inside('<uri>model://cone</uri>', tmp_path).link('cone::body').pose.position[2] == 7.0
+def test_model_included_without_pose_keeps_its_own(cone):
+    assert inside('<uri>model://cone</uri>', cone).link('cone::body').pose.position[2] == 7.0
 
 
 def test_newest_readable_version_of_a_model_is_used(tmp_path):
@@ -113,10 +115,8 @@ def test_the_first_directory_of_the_path_wins(tmp_path):
 
 
 @pytest.mark.parametrize('uri', ['model:///cone', 'model:////cone/', 'model://cone/model.sdf'])
-def test_any_number_of_slashes_may_follow_the_scheme(tmp_path, uri):
-    put(tmp_path, 'cone', {'model.sdf': CONE})
-    text = f'<sdf version="1.6"><world name="w"><include><uri>{uri}</uri></include></world></sdf>'
-    spec, _ = load_sdf(text, 'bot', find_model=ModelSearch([tmp_path]))
+def test_any_number_of_slashes_may_follow_the_scheme(cone, uri):
+    spec, _ = spawn(f'<uri>{uri}</uri>', cone)
     assert [link.name for link in spec.links] == ['body']
 
 
@@ -125,14 +125,9 @@ def test_meshes_are_found_relative_to_the_including_file(tmp_path):
         '<link name="body"><visual name="v"><geometry><mesh><uri>part.obj</uri></mesh>'
         '</geometry></visual></link>'
     )
-    put(
-        tmp_path,
-        'cone',
-        {
-            'model.sdf': CONE.replace('<link name="body"/>', part),
-            'part.obj': 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n',
-        },
-    )
+    model = CONE.replace('<link name="body"/>', part)
+    mesh = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
+    put(tmp_path, 'cone', {'model.sdf': model, 'part.obj': mesh})
     spec, _ = spawn('<uri>model://cone</uri>', tmp_path)
     assert spec.links[0].visuals[0].geometry.path == str(tmp_path / 'cone' / 'part.obj')
 
@@ -159,15 +154,8 @@ def test_omissions_of_an_included_file_are_reported_once_with_its_name(tmp_path,
 
 def test_circular_includes_are_rejected(tmp_path):
     for name, other in (('one', 'two'), ('two', 'one')):
-        put(
-            tmp_path,
-            name,
-            {
-                'model.sdf': CONE.replace(
-                    '<link', f'<include><uri>model://{other}</uri></include><link'
-                )
-            },
-        )
+        include = f'<include><uri>model://{other}</uri></include>'
+        put(tmp_path, name, {'model.sdf': CONE.replace('<link', f'{include}<link')})
     assert 'includes itself' in error_message('<uri>model://one</uri>', tmp_path)
 
 
