@@ -5,7 +5,6 @@ import os
 import pickle
 import subprocess
 import tempfile
-from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -48,7 +47,7 @@ def fixture_running():
     if os.getuid():
         pytest.skip('only root can try what another user can do')
     before = os.umask(0)
-    with closing(recorded_world()) as world, CrashSandbox(world.engine, make_engine) as sandbox:
+    with recorded_world() as world, CrashSandbox(world.engine, make_engine) as sandbox:
         _, camera = spawn_robot(world, 'camera_320')
         world.spawn(robot_spec(), 'rosbots', Pose((0.0, 3.0, 0.5)))
         camera.read()
@@ -129,31 +128,6 @@ def test_temporary_files_are_private_whatever_the_umask(running, mask, tmp_path,
     assert not reached(f"open('{file}', 'w')")
     scratch.close()
     os.umask(0)
-
-
-def test_saved_world_has_the_permissions_that_the_umask_leaves(running, tmp_path):
-    from rosbots_description.sim.resources.new_file import write_world
-
-    before = os.umask(0o027)
-    write_world(str(tmp_path / 'new.world'), '<sdf/>')
-    assert (tmp_path / 'new.world').stat().st_mode & 0o777 == 0o640
-    os.umask(before)
-
-
-def test_saved_world_does_not_follow_a_planted_link(tmp_path):
-    from rosbots_description.sim.core.errors import SimError
-    from rosbots_description.sim.resources.new_file import write_world
-
-    kept = tmp_path / 'kept'
-    kept.write_text('kept')
-    for number, target in enumerate((kept, tmp_path / 'absent')):
-        link = tmp_path / f'{number}.world'
-        link.symlink_to(target)
-        with pytest.raises(SimError, match='it exists already'):
-            write_world(str(link), '<sdf/>')
-    write_world(str(tmp_path / '0.world'), '<sdf/>', overwrite=True)
-    assert kept.read_text() == 'kept'
-    assert not (tmp_path / 'absent').exists()
 
 
 @pytest.mark.parametrize(

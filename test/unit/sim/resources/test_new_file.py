@@ -9,12 +9,13 @@ from rosbots_description.sim.core import SimError
 from rosbots_description.sim.resources import new_file, write_world
 
 
-def test_a_file_is_written_with_the_permissions_of_any_other(tmp_path):
-    other = tmp_path / 'other'
-    other.touch()
+@pytest.mark.parametrize(('mask', 'mode'), [(0o022, 0o644), (0o027, 0o640)])
+def test_a_file_is_written_with_the_permissions_that_the_umask_leaves(tmp_path, mask, mode):
+    before = os.umask(mask)
     write_world(str(tmp_path / 'a.world'), 'text')
+    os.umask(before)
     assert (tmp_path / 'a.world').read_text() == 'text'
-    assert stat.S_IMODE((tmp_path / 'a.world').stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
+    assert stat.S_IMODE((tmp_path / 'a.world').stat().st_mode) == mode
 
 
 def test_a_file_that_is_there_is_overwritten_only_if_asked(tmp_path):
@@ -64,7 +65,13 @@ def test_a_write_that_fails_leaves_no_half_file(tmp_path, monkeypatch, overwrite
     assert [path.read_text() for path in tmp_path.iterdir()] == (['old'] if overwrite else [])
 
 
-def test_a_link_to_nowhere_counts_as_a_file(tmp_path):
-    os.symlink(tmp_path / 'elsewhere.world', tmp_path / 'a.world')
-    with pytest.raises(SimError, match='it exists already'):
-        write_world(str(tmp_path / 'a.world'), 'text')
+def test_no_planted_link_is_followed(tmp_path):
+    kept = tmp_path / 'kept'
+    kept.write_text('kept')
+    for name, target in (('there', kept), ('nowhere', tmp_path / 'absent')):
+        (tmp_path / f'{name}.world').symlink_to(target)
+        with pytest.raises(SimError, match='it exists already'):
+            write_world(str(tmp_path / f'{name}.world'), 'text')
+    write_world(str(tmp_path / 'there.world'), 'text', overwrite=True)
+    assert kept.read_text() == 'kept'
+    assert not (tmp_path / 'absent').exists()
