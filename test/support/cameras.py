@@ -1,8 +1,7 @@
-"""What tests of cameras share: limits, robots, stamps, and the process that renders."""
+"""What tests of cameras share: limits, stamps, and the process that renders."""
 
 from rosbots_description.sim.rendering.image_capture import renderer_of
 from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
-from support.sensing import ROBOTS
 
 LEVELS = 3  # of 255 that a face may differ
 EDGES = 1e-4  # share of pixels on edges, where one of four samples may fall to the other side
@@ -14,11 +13,13 @@ def plugin_of(sensor):
     )
 
 
-def robot_with(old, new):
-    """Return the recorded robot with a camera of 320 x 240 pixels, after a replacement."""
-    text = (ROBOTS / 'camera_320.urdf').read_text(encoding='utf-8')
-    assert old in text
-    return text.replace(old, new)
+def camera_sdf(inside='', rate='0'):
+    """Return a static model of a camera `s` that looks along x, as SDF."""
+    return (
+        '<sdf version="1.6"><model name="m"><static>1</static><link name="l"><sensor name="s" '
+        f'type="camera"><update_rate>{rate}</update_rate><camera>{inside}</camera></sensor>'
+        '</link></model></sdf>'
+    )
 
 
 def stamps(sensor):

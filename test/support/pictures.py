@@ -8,7 +8,7 @@ from PIL import Image
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.public.world import World
 
-from .sensing import RECORDED, ROBOTS
+from .sensing import RECORDED, robot_text
 
 FILES = RECORDED / 'sensors' / 'pictures'
 
@@ -28,6 +28,5 @@ def recorded_world(name='scene_a', shadows=False):
 
 def spawn_robot(world, robot, x=0.0, yaw=0.0):
     """Spawn a recorded robot; return its model and its camera."""
-    text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
-    model = world.spawn(text, 'robot', Pose((x, 0.0, 0.0), from_rpy(0.0, 0.0, yaw)))
+    model = world.spawn(robot_text(robot), 'robot', Pose((x, 0.0, 0.0), from_rpy(0.0, 0.0, yaw)))
     return model, next(iter(model.sensors.values()))

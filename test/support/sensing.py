@@ -14,11 +14,33 @@ RECORDED = ROOT / 'test' / 'data' / 'gazebo'
 ROBOTS = RECORDED / 'sensors' / 'robots'
 # Pose of the laser in all recorded robots, in the model's frame: position [m], yaw [rad].
 LASER, HEADING = (0.12, 0.03, 0.35), 0.1
-CUBE = (
-    '<sdf version="1.6"><model name="cube"><static>1</static><link name="l">'
-    '<collision name="c"><geometry><box><size>.02 .02 .02</size></box></geometry>'
-    '</collision></link></model></sdf>'
-)
+
+
+def robot_text(name, old='', new=''):
+    """Return the URDF of a recorded robot, with another text in place of one that it has."""
+    file = ROBOTS / f'{name}.urdf'
+    text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text('utf-8')
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+def box_sdf(size, name='box', static=True, more=''):
+    """Return a box [m] that weighs 1 kg unless it is static, as SDF."""
+    return (
+        f'<sdf version="1.6"><model name="{name}"><static>{static}</static><link name="l">'
+        f'<collision name="c">{more}<geometry><box><size>{size}</size></box></geometry>'
+        '</collision></link></model></sdf>'
+    )
+
+
+CUBE = box_sdf('.02 .02 .02')
+
+
+def timed(world, output):
+    """Return a list that takes the time [ms] and the reading of each update from now on."""
+    found = []
+    output.connect(lambda reading: found.append((world.clock.now_ns // 1_000_000, reading)))
+    return found
 
 
 def recordings(name):

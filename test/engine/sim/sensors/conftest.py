@@ -1,6 +1,4 @@
-"""The scene before which cameras of Gazebo were recorded."""
-
-from contextlib import closing
+"""The scene in which sensors of Gazebo were recorded."""
 
 import pytest
 from support.pictures import recorded_world
@@ -8,5 +6,5 @@ from support.pictures import recorded_world
 
 @pytest.fixture
 def scene():
-    with closing(recorded_world()) as world:
+    with recorded_world() as world:
         yield world

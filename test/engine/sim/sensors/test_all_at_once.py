@@ -1,14 +1,13 @@
 """Robots with all kinds of sensors in one world: bit-identical runs, and resets."""
 
 import pickle
-from contextlib import closing
 
 import numpy as np
 import pytest
-from support.sensing import RECORDED, ROBOTS
+from support.pictures import recorded_world
+from support.sensing import robot_text
 
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.public.world import World
 
 NOISY = (
     'laser_noise',
@@ -45,10 +44,8 @@ def spawn_all(world, robots, are_read=True):
     """Return a list that takes robot, output, time [ms] and bytes of all readings."""
     found = []
     for number, name in enumerate(robots):
-        file = ROBOTS / f'{name}.urdf'
-        text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text('utf-8')
         model = world.spawn(
-            load_urdf(text, name, robot_namespace='/')[0],
+            load_urdf(robot_text(name), name, robot_namespace='/')[0],
             name,
             y=3.0 * (number - len(robots) // 2),
             z=0.02,
@@ -67,13 +64,20 @@ def spawn_all(world, robots, are_read=True):
 
 @pytest.fixture
 def world():
-    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as made:
+    with recorded_world(shadows=True) as made:
         yield made
+
+
+def require_equal(found, first):
+    """Compare readings with those of the first time, bit by bit."""
+    assert [entry[:2] for entry in found] == [entry[:2] for entry in first]
+    pairs = zip(first, found, strict=True)
+    assert {key for (key, _, one), (_, _, other) in pairs if one != other} == set()
 
 
 def test_runs_with_all_sensors_and_drives_read_are_bit_identical():
     def run():
-        with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
+        with recorded_world(shadows=True) as world:
             found = spawn_all(world, NOISY)
             world.run(300)
             return found
@@ -91,12 +95,7 @@ def test_readings_after_a_reset_are_bit_identical(world):
     world.reset_simulation()
     found.clear()
     world.run(200)
-    assert {key for key, _, _ in found} == {key for key, _, _ in first}
-    assert [entry[:2] for entry in found] == [entry[:2] for entry in first]
-    differing = {
-        key for (key, _, one), (_, _, other) in zip(first, found, strict=True) if one != other
-    }
-    assert differing == set()
+    require_equal(found, first)
 
 
 def test_from_a_saved_state_everything_is_measured_again_bit_by_bit(world):
@@ -109,11 +108,7 @@ def test_from_a_saved_state_everything_is_measured_again_bit_by_bit(world):
     world.restore(state)
     found.clear()
     world.run(150)
-    assert [entry[:2] for entry in found] == [entry[:2] for entry in first]
-    differing = {
-        key for (key, _, one), (_, _, other) in zip(first, found, strict=True) if one != other
-    }
-    assert differing == set()
+    require_equal(found, first)
 
 
 @pytest.mark.parametrize('robot', PERIODS)

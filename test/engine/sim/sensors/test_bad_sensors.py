@@ -4,32 +4,21 @@ import gc
 import logging
 import re
 import weakref
-from contextlib import closing
 
 import pytest
-from support.sensing import RECORDED, ROBOTS
+from support.sensing import robot_text
 
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.public.world import World
 
-LASER, IMU, BUMPER, ARM = 'laser_nonoise', 'imu_sensor', 'bumper', 'arm_ft'
-RANGE = 'range'
+LASER, RANGE, BUMPER, ARM = 'laser_nonoise', 'range', 'bumper', 'arm_ft'
+IMU, LINK_IMU, CAMERA = 'imu_sensor', 'imu_model', 'camera_320'
 RAYS = 'it takes a number from 1 to 1000000'
 NOISE = '<noise><type>gaussian</type><mean>0</mean><stddev>{}</stddev></noise></ray>'
 
 
-@pytest.fixture
-def world():
-    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as made:
-        yield made
-
-
 def spawn(world, robot, old='', new=''):
     """Return the model with a text replaced, and a list that takes the times [ms] of readings."""
-    file = ROBOTS / f'{robot}.urdf'
-    text = (file if file.exists() else RECORDED / 'robots' / file.name).read_text('utf-8')
-    assert old in text
-    model = world.spawn(load_urdf(text.replace(old, new, 1), 'bot')[0], 'bot')
+    model = world.spawn(load_urdf(robot_text(robot, old, new), 'bot')[0], 'bot')
     times = []
     for plugin in model.plugins.values():
         for name, output in plugin.outputs.items():
@@ -88,17 +77,23 @@ def spawn(world, robot, old='', new=''):
         (IMU, '<frameName>imu_link</frameName>', '', 'missing <frameName>, cannot proceed'),
         (ARM, '<updateRate>100.0<', '<updateRate>nan<', "<updateRate> is 'nan'; it takes a finite"),
         (ARM, '<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
+        (IMU, '<gaussianNoise>0<', '<gaussianNoise>-1<', '<gaussianNoise> is -1; it must be'),
+        (IMU, '<rpyOffset>0 0 0', '<rpyOffset>0 0', "<rpyOffset> is '0 0'; it takes three"),
+        (LINK_IMU, '<bodyName>base_footprint</bodyName>', '', 'missing <bodyName>, cannot proceed'),
+        (LINK_IMU, '>base_footprint</body', '>nobody</body', 'bodyName: nobody does not exist'),
+        (ARM, '<jointName>elbow</jointName>', '', 'missing <jointName>, cannot proceed'),
         (ARM, '<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
+        (CAMERA, '<width>320<', '<width>9000<', '<width> is 9000; it takes a number from 1 to'),
     ],
 )
-def test_invalid_sensor_is_left_out_with_an_error(world, caplog, robot, old, new, sentence):
-    model, times = spawn(world, robot, old, new)
-    world.run(30)
+def test_invalid_sensor_is_left_out_with_an_error(scene, caplog, robot, old, new, sentence):
+    model, times = spawn(scene, robot, old, new)
+    scene.run(30)
     assert sentence in caplog.text
     assert caplog.text.count('the model is spawned without it') == 1
-    assert world.clock.now_ns == 30_000_000
+    assert scene.clock.now_ns == 30_000_000
     assert bool(times) == (robot == ARM)  # whose other joint is measured
-    assert model.name in world.models
+    assert model.name in scene.models
 
 
 @pytest.mark.parametrize(
@@ -127,9 +122,9 @@ def test_invalid_sensor_is_left_out_with_an_error(world, caplog, robot, old, new
         (ARM, '<updateRate>100.0<', '<updateRate>-1<', None),
     ],
 )
-def test_irregular_values_accepted_by_gazebo_work(world, caplog, robot, old, new, expected):
-    _, times = spawn(world, robot, old, new)
-    world.run(30)
+def test_irregular_values_accepted_by_gazebo_work(scene, caplog, robot, old, new, expected):
+    _, times = spawn(scene, robot, old, new)
+    scene.run(30)
     assert 'spawned without' not in caplog.text
     assert 'ERROR' not in caplog.text
     if expected is None:  # one joint in each step, the other at 100 Hz
@@ -138,64 +133,63 @@ def test_irregular_values_accepted_by_gazebo_work(world, caplog, robot, old, new
         assert times == expected
 
 
-def test_error_about_an_unknown_collision_lists_the_known_ones(world, caplog):
+def test_error_about_an_unknown_collision_lists_the_known_ones(scene, caplog):
     named = '<collision>base_footprint_fixed_joint_lump__base_link_collision</collision>'
-    _, times = spawn(world, BUMPER, named, '')
-    world.run(30)
+    _, times = spawn(scene, BUMPER, named, '')
+    scene.run(30)
     assert 'it names no <collision>; the collisions of' in caplog.text
     assert 'base_footprint_fixed_joint_lump__base_link_collision' in caplog.text
     assert times == [20]
 
 
-def test_scan_of_a_million_rays_gives_a_warning(world, caplog):
+def test_scan_of_a_million_rays_gives_a_warning(scene, caplog):
     with caplog.at_level(logging.WARNING):
-        _, times = spawn(world, LASER, '<samples>720<', '<samples>1000000<')
+        _, times = spawn(scene, LASER, '<samples>720<', '<samples>1000000<')
     assert (
         '1000000 rays, with those of all other sensors, take long; the simulation waits for '
         'each scan' in caplog.text
     )
-    world.run(30)
+    scene.run(30)
     assert times == [25]
 
 
 def spawn_lasers(world, numbers, samples):
-    text = (ROBOTS / f'{LASER}.urdf').read_text('utf-8')
-    text = text.replace('<samples>720<', f'<samples>{samples}<')
+    text = robot_text(LASER, '<samples>720<', f'<samples>{samples}<')
     return [
         world.spawn(load_urdf(text, f'bot{one}')[0], f'bot{one}', x=30.0 + 3.0 * one)
         for one in numbers
     ]
 
 
-def test_sum_of_all_rays_gives_a_warning_whenever_it_has_doubled(world, caplog):
-    spawn_lasers(world, range(16), 90_000)
+def test_sum_of_all_rays_gives_a_warning_whenever_it_has_doubled(scene, caplog):
+    spawn_lasers(scene, range(16), 90_000)
     warned = [
         int(re.search(r': (\d+) rays', line)[1]) for line in caplog.messages if 'take long' in line
     ]
     assert warned == [270_000, 540_000, 1_080_000]
     for one in range(16):
-        world.delete(f'bot{one}')
+        scene.delete(f'bot{one}')
     caplog.clear()
-    spawn_lasers(world, range(3), 90_000)
+    spawn_lasers(scene, range(3), 90_000)
     assert caplog.text.count('270000 rays, with those of all other sensors, take long') == 1
 
 
-def test_sum_of_all_rays_is_limited_until_models_are_deleted(world, caplog):
-    spawn_lasers(world, range(5), 1_000_000)
+def test_sum_of_all_rays_is_limited_until_models_are_deleted(scene, caplog):
+    spawn_lasers(scene, range(5), 1_000_000)
     assert 'spawned without it' not in caplog.text
-    (refused,) = spawn_lasers(world, [5], 1000)
+    (refused,) = spawn_lasers(scene, [5], 1000)
     assert (
         'the sensors of this world would cast 5001000 rays with it; at most 5000000 are cast'
         in caplog.text
     )
     assert not refused.sensors
-    world.delete('bot0')
-    (accepted,) = spawn_lasers(world, [6], 1000)
+    scene.delete('bot0')
+    (accepted,) = spawn_lasers(scene, [6], 1000)
     assert accepted.sensors
 
 
-def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(world):
-    models = spawn_lasers(world, range(4), 100_000)
+def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(scene):
+    models = spawn_lasers(scene, range(4), 100_000)
     fans = [weakref.ref(next(iter(model.sensors.values())).fan) for model in models]
     assert len(set(fans)) == 1
     for model in models:
@@ -204,16 +198,16 @@ def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(world):
     try:
         for number in range(4):
             assert fans[0]() is not None
-            world.delete(f'bot{number}')
+            scene.delete(f'bot{number}')
         assert fans[0]() is None
     finally:
         gc.enable()
 
 
-def test_deleted_models_are_referenced_by_no_ray_scene(world):
-    models = [weakref.ref(one) for one in spawn_lasers(world, range(2), 720)]
+def test_deleted_models_are_referenced_by_no_ray_scene(scene):
+    models = [weakref.ref(one) for one in spawn_lasers(scene, range(2), 720)]
     next(iter(models[0]().sensors.values())).read()
     for number in range(2):
-        world.delete(f'bot{number}')
+        scene.delete(f'bot{number}')
     gc.collect()
     assert [one() for one in models] == [None, None]

@@ -1,12 +1,11 @@
 """Textures lie on shapes the right way round."""
 
-from contextlib import closing
-
 import numpy as np
 import pytest
 from PIL import Image
+from support.cameras import camera_sdf
 
-from rosbots_description.sim.public.world import World
+from rosbots_description.sim import Pose, World, from_rpy
 
 TEXTURED = """<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>
@@ -35,27 +34,26 @@ TEXTURED = """<?xml version="1.0"?>
 <scene><instance_visual_scene url="#w"/></scene></COLLADA>"""
 
 
+# Red and green at the top, blue at the bottom left.
+CORNERS = Image.fromarray(
+    np.array([[(255, 0, 0), (0, 255, 0)], [(0, 0, 255), (0, 0, 0)]], np.uint8)
+)
+
+
 def test_texture_has_the_right_orientation(tmp_path):
     """Seen along +x: y to the left, so that what is left in the image is right in the picture."""
-    image = np.zeros((2, 2, 3), 'u1')
-    image[0, 0], image[0, 1], image[1, 0] = (255, 0, 0), (0, 255, 0), (0, 0, 255)  # top row first
     folder = tmp_path / 'model' / 'meshes'
     folder.mkdir(parents=True)
-    Image.fromarray(image).save(folder / 'image.png')
+    CORNERS.save(folder / 'image.png')
     (folder / 'square.dae').write_text(TEXTURED.format(image='image.png'))
-    with closing(World.empty()) as world:
+    with World.empty() as world:
         world.spawn(
             '<sdf version="1.6"><model name="s"><static>1</static><pose>3 0 1 0 0 0</pose>'
             f'<link name="l"><visual name="v"><geometry><mesh><uri>{folder}/square.dae'
             '</uri></mesh></geometry></visual></link></model></sdf>',
             's',
         )
-        eye = world.spawn(
-            '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 1 0 0 0</pose><link '
-            'name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>',
-            'm',
-        )
-        seen = next(iter(eye.sensors.values())).read().pixels.astype(int)
+        seen = world.spawn(camera_sdf(), z=1.0).sensor('s').read().pixels.astype(int)
     left, right, upper, lower = 120, 200, 80, 160  # [pixels] within the quarters of the square
     assert [
         int(seen[row, column].argmax())
@@ -67,14 +65,12 @@ def test_texture_has_the_right_orientation(tmp_path):
 
 
 def test_an_image_of_a_script_lies_on_the_ground_with_its_top_along_y(tmp_path):
-    image = np.zeros((2, 2, 3), 'u1')
-    image[0, 0], image[0, 1], image[1, 0] = (255, 0, 0), (0, 255, 0), (0, 0, 255)  # top row first
-    Image.fromarray(image).save(tmp_path / 'track.png')
+    CORNERS.save(tmp_path / 'track.png')
     (tmp_path / 'track.material').write_text(
         'material track\n{\n technique\n {\n  pass\n  {\n   texture_unit\n   {\n    '
         'texture track.png\n   }\n  }\n }\n}\n'
     )
-    with closing(World.empty()) as world:
+    with World.empty() as world:
         world.spawn(
             '<sdf version="1.6"><model name="t"><static>1</static><pose>0 0 .01 0 0 0</pose><link '
             'name="l"><visual name="v"><geometry><plane><normal>0 0 1</normal><size>2 2</size>'
@@ -82,12 +78,8 @@ def test_an_image_of_a_script_lies_on_the_ground_with_its_top_along_y(tmp_path):
             '</script></material></visual></link></model></sdf>',
             't',
         )
-        eye = world.spawn(
-            '<sdf version="1.6"><model name="m"><static>1</static><pose>0 0 3 0 1.5708 0</pose>'
-            '<link name="l"><sensor name="s" type="camera"><camera/></sensor></link></model></sdf>',
-            'm',
-        )
-        seen = next(iter(eye.sensors.values())).read().pixels.astype(int)
+        pose = Pose((0.0, 0.0, 3.0), from_rpy(0.0, 1.5708, 0.0))
+        seen = world.spawn(camera_sdf(), pose=pose).sensor('s').read().pixels.astype(int)
     # The picture's top is +x and its left is +y.
     x_left_y_top, x_right_y_top, x_left_y_bottom = seen[160, 120], seen[80, 120], seen[160, 200]
     assert [int(one.argmax()) for one in (x_left_y_top, x_right_y_top, x_left_y_bottom)] == [

@@ -4,12 +4,12 @@ import contextlib
 import math
 import os
 import signal
-from contextlib import closing
 
 import pytest
-from support.cameras import plugin_of, process_of, robot_with, stamps
+from support.cameras import camera_sdf, plugin_of, process_of, stamps
 from support.patience import wait_until
-from support.pictures import FILES, spawn_robot
+from support.pictures import spawn_robot
+from support.sensing import robot_text
 
 from rosbots_description.sim.public.world import World
 
@@ -23,7 +23,8 @@ from rosbots_description.sim.public.world import World
 )
 def test_image_rate_is_the_lesser_of_sensor_and_plugin(scene, old, new, times):
     found = []
-    camera = next(iter(scene.spawn(robot_with(old, new)).sensors.values()))
+    text = robot_text('camera_320', old, new)
+    camera = next(iter(scene.spawn(text).sensors.values()))
     plugin_of(camera).outputs['image'].connect(lambda image: found.append(image.stamp_ns // 10**6))
     scene.run(seconds=0.41)
     assert found[:4] == times
@@ -47,9 +48,8 @@ def test_each_image_has_its_step_and_none_is_missing(scene):
     ],
 )
 def test_triggered_camera_takes_one_image_for_each_trigger(scene, robot, plugin, output):
-    text = (FILES.parent / 'robots' / f'{robot}.urdf').read_text(encoding='utf-8')
-    name = plugin.removeprefix('triggered_')
-    model = scene.spawn(text.replace(f'libgazebo_ros_{name}.so', f'libgazebo_ros_{plugin}.so'), 'm')
+    text = robot_text(robot, plugin.removeprefix('triggered_') + '.so', f'{plugin}.so')
+    model = scene.spawn(text, 'm')
     camera = plugin_of(next(iter(model.sensors.values())))
     camera.trigger()  # nobody reads
     found = []
@@ -65,14 +65,8 @@ def test_triggered_camera_takes_one_image_for_each_trigger(scene, robot, plugin,
 
 @pytest.mark.parametrize('rate', ['0', '-30', '5000'])
 def test_rate_of_zero_or_above_that_of_the_steps_is_every_step(rate):
-    with closing(World.empty()) as world:
-        model = world.spawn(
-            '<sdf version="1.6"><model name="m"><static>1</static><link name="l"><sensor name="s" '
-            f'type="camera"><update_rate>{rate}</update_rate><camera/></sensor></link></model>'
-            '</sdf>',
-            'm',
-        )
-        taken = stamps(next(iter(model.sensors.values())))
+    with World.empty() as world:
+        taken = stamps(world.spawn(camera_sdf(rate=rate)).sensor('s'))
         world.run(steps=5)
         assert [stamp // 1_000_000 for stamp, _ in taken] == [1, 2, 3, 4, 5]
 

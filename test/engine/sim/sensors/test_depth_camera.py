@@ -4,19 +4,12 @@ import numpy as np
 import pytest
 from support.cameras import EDGES, plugin_of
 from support.pictures import FILES, spawn_robot
-from support.sensing import ROBOTS, recordings
+from support.sensing import recordings, robot_text
 
-from rosbots_description.ros_api.adapters.cameras import (
-    cloud_message,
-    image_message,
-)
+from rosbots_description.ros_api.adapters.cameras import cloud_message, image_message
 
 POINTS = recordings('depth')  # row, column, x, y, z [m], colour
-
-
 PLANE_LOWEST = 1.971654  # [m] to the ground in the last row, before a wall at 2 m
-
-
 DEPTH = 1e-4  # [m]
 
 
@@ -62,14 +55,9 @@ def test_depths_and_points_agree_with_the_recording(scene, robot, kind):
 
 def test_millimetres_are_rounded_down_and_none_is_zero(scene):
     """As recorded but for 21 pixels, which are 1 mm off there, too."""
-    text = (
-        (ROBOTS / 'openni_kinect.urdf')
-        .read_text(encoding='utf-8')
-        .replace(
-            '<pointCloudCutoff>',
-            '<useDepth16UC1Format>true</useDepth16UC1Format><pointCloudCutoff>',
-        )
-    )
+    cutoff = '<pointCloudCutoff>'
+    short = f'<useDepth16UC1Format>true</useDepth16UC1Format>{cutoff}'
+    text = robot_text('openni_kinect', cutoff, short)
     depths, kind, _ = depths_of(next(iter(scene.spawn(text).sensors.values())), '<u2')
     assert kind[:2] == ('16UC1', 640)
     expected = np.nan_to_num(recorded_depths() * np.float32(1000.0)).astype(int)
@@ -86,10 +74,8 @@ def test_depth_of_a_wall_is_constant(scene):
         '<link name="l"><visual name="v"><geometry><box><size>.2 10 1.5</size></box>'
         '</geometry></visual></link></model></sdf>'
     )
-    text = (
-        (ROBOTS / 'openni_kinect.urdf')
-        .read_text(encoding='utf-8')
-        .replace('xyz="0.2 0 0.4" rpy="0 0.1 0"', 'xyz="0 0 0.75" rpy="0 0 0"')
+    text = robot_text(
+        'openni_kinect', 'xyz="0.2 0 0.4" rpy="0 0.1 0"', 'xyz="0 0 0.75" rpy="0 0 0"'
     )
     depths, _, _ = depths_of(next(iter(scene.spawn(text).sensors.values())))
     assert np.isnan(depths).sum() == np.isnan(depths[:30]).sum() == 9600

@@ -1,39 +1,25 @@
 """A gpu_ray measures as a ray does; Gazebo's differs by centimetres, and loses laser_retro."""
 
 import logging
-from contextlib import closing
 
 import numpy as np
 import pytest
-from support.sensing import RECORDED, ROBOTS, recordings
-
-from rosbots_description.sim.public.world import World
+from support.sensing import numbers, recordings, robot_text
 
 NOISE = '<noise><type>gaussian</type><mean>0</mean><stddev>0.05</stddev></noise></ray>'
 
 
-@pytest.fixture
-def scene():
-    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
-        yield world
-
-
 def spawn_gpu(scene, robot, old='', new=''):
-    text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
-    for before, after in (
-        ('type="ray"', 'type="gpu_ray"'),
-        ('ros_laser.so', 'ros_gpu_laser.so'),
-        *([(old, new)] if old else ()),
-    ):
-        assert before in text
-        text = text.replace(before, after)
+    text = robot_text(robot, old, new)
+    assert 'type="ray"' in text and 'ros_laser.so' in text
+    text = text.replace('type="ray"', 'type="gpu_ray"').replace('ros_laser.so', 'ros_gpu_laser.so')
     return scene.spawn(text)
 
 
 @pytest.mark.parametrize('robot', ['laser_nonoise', 'laser_short'])
 def test_scan_agrees_with_the_recording_of_a_ray_sensor(scene, robot):
     scan = next(iter(spawn_gpu(scene, robot).sensors.values())).read()
-    expected = np.array([float(value) for value in recordings('laser')[robot]['message']['ranges']])
+    expected = numbers(recordings('laser')[robot]['message']['ranges'])
     assert np.array_equal(np.isinf(scan.ranges), np.isinf(expected))
     met = np.isfinite(expected)
     assert np.abs(scan.ranges[met] - expected[met]).max() < 1e-5

@@ -1,7 +1,6 @@
 """Hector's IMU and satellite navigation agree with mechanics and geodesy."""
 
 import math
-from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +23,7 @@ GRAVITY = 9.8  # [m/s^2]
 
 @pytest.fixture
 def world():
-    with closing(World()) as made:
+    with World() as made:
         yield made
 
 
@@ -88,7 +87,7 @@ def test_drift_and_noise_have_their_deviation_and_correlation_time():
     )
     drifts = []
     for seed in range(150):
-        with closing(World()) as world:
+        with World() as world:
             world.seed = seed
             plugin = spawn(world, 'imu', 'imu', tags)[1]
             drifts.append([plugin._accel.drift(time) for time in (0.0, 10.0, 100.0)])
@@ -169,15 +168,10 @@ def test_calibration_removes_the_drift_until_it_returns(world):
 
 def test_readings_repeat_with_the_seed_at_any_start_of_reading():
     def reading(seed, begin):
-        with closing(World.empty()) as world:
+        with World.empty() as world:
             world.seed = seed
-            model = world.spawn(
-                ROBOT.format(
-                    library='imu',
-                    tags=('<accelDrift>.3</accelDrift><rateGaussianNoise>.1</rateGaussianNoise>'),
-                ),
-                'r',
-            )
+            tags = '<accelDrift>.3</accelDrift><rateGaussianNoise>.1</rateGaussianNoise>'
+            model = world.spawn(ROBOT.format(library='imu', tags=tags), 'r')
             world.run(begin)
             found = []
             model.plugin('p').outputs['imu'].connect(found.append)

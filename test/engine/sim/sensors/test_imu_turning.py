@@ -1,10 +1,8 @@
 """An IMU 0.1 m before the middle of a robot that turns steadily, flat and tilted."""
 
-from contextlib import closing
-
 import numpy as np
 import pytest
-from support.sensing import ROBOTS, recordings
+from support.sensing import recordings, robot_text
 
 from rosbots_description.sim.core.transforms import conjugate, from_rpy, rotate
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
@@ -16,8 +14,8 @@ MOUNTS = {'flat': (0.0, 0.0, 0.0), 'tilt': (0.2, -0.3, 0.5)}
 
 @pytest.mark.parametrize('name', MOUNTS)
 def test_turning_imu_measures_rate_and_centripetal_acceleration(name):
-    text = (ROBOTS / f'planar_imu_{name}.urdf').read_text(encoding='utf-8')
-    with closing(World.empty()) as world:
+    text = robot_text(f'planar_imu_{name}')
+    with World.empty() as world:
         model = world.spawn(load_urdf(text, 'bot', robot_namespace='/')[0], 'bot')
         world.run(500)
         model.plugin('planar_move').command(0.5, 1.0)

@@ -1,15 +1,14 @@
 """Joint reactions agree with Gazebo's recordings."""
 
 import math
-from contextlib import closing
 
 import pytest
-from support.sensing import RECORDED
+from support.sensing import box_sdf, robot_text, timed
 
 from rosbots_description.ros_api.adapters.wrenches import wrench_message
 from rosbots_description.sim.public.world import World
 
-ARM = (RECORDED / 'robots' / 'arm_ft.urdf').read_text(encoding='utf-8')
+ARM = robot_text('arm_ft')
 # In Gazebo, hanging at rest: force and torque of each joint [N, N m].
 HANGING = {
     'ft_elbow': ((0.0, 0.0, 4.9), (0.0, 0.0, 0.0)),
@@ -20,22 +19,19 @@ CLOSE = 1e-3
 
 @pytest.fixture
 def world():
-    with closing(World.empty()) as made:
+    with World.empty() as made:
         yield made
 
 
-def spawn(world, arm=ARM):
+def spawn(world):
     """Return the arm, hanging, and by topic a list that takes times [ms] and readings."""
-    model = world.spawn(arm, 'arm')
+    model = world.spawn(ARM, 'arm')
     model.joint('shoulder').set_position(math.pi)
-    found = {}
-    for plugin in model.plugins.values():
-        if 'wrench' in plugin.outputs:
-            readings = found.setdefault(plugin.params.values['topicName'], [])
-            plugin.outputs['wrench'].connect(
-                lambda reading, to=readings: to.append((world.clock.now_ns // 1_000_000, reading))
-            )
-    return model, found
+    return model, {
+        plugin.params.values['topicName']: timed(world, plugin.outputs['wrench'])
+        for plugin in model.plugins.values()
+        if 'wrench' in plugin.outputs
+    }
 
 
 @pytest.mark.parametrize('topic', HANGING)
@@ -85,11 +81,6 @@ ROD = """<robot name="rod"><link name="world"/><joint name="f" type="fixed"><par
 <limit lower="{lower}" upper="0" effort="100" velocity="10"/></joint>
 <gazebo><plugin name="p" filename="libgazebo_ros_ft_sensor.so"><topicName>t</topicName>
 <jointName>j</jointName></plugin></gazebo></robot>"""
-LOAD = (
-    '<sdf version="1.6"><model name="load"><link name="l"><inertial><mass>1</mass></inertial>'
-    '<collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision>'
-    '</link></model></sdf>'
-)
 
 
 @pytest.mark.parametrize('lower', [-1, 0])  # 0: as of a fixed joint that is kept for its sensor
@@ -101,7 +92,8 @@ def test_reaction_at_a_joint_limit_is_the_weight_of_rod_and_load(world, lower):
     assert (*found[-1].force, *found[-1].torque) == pytest.approx(
         (0.0, 0.0, -19.6, 0.0, 9.8, 0.0), abs=0.01
     )
-    world.spawn(LOAD, x=0.8 * math.cos(0.7), y=0.8 * math.sin(0.7), z=1.1, yaw=0.7)
+    load = box_sdf('.1 .1 .1', static=False)
+    world.spawn(load, x=0.8 * math.cos(0.7), y=0.8 * math.sin(0.7), z=1.1, yaw=0.7)
     world.run(1000)
     assert found[-1].force[2] == pytest.approx(-29.4, abs=0.05)
     assert found[-1].torque[1] == pytest.approx(9.8 + 0.8 * 9.8, abs=0.05)
@@ -117,29 +109,3 @@ def test_frame_is_that_of_the_child_and_nothing_is_measured_without_readers(worl
     plugin.outputs['wrench'].disconnect(read.append)
     assert len(read) == 2
     assert world.engine.joint_reaction(model.body, 'elbow').force == pytest.approx((0, 0, 0))
-
-
-def test_readings_continue_after_a_reset_of_time(world):
-    model, found = spawn(world)
-    world.run(50)
-    world.reset_simulation()
-    model.joint('shoulder').set_position(math.pi)
-    found['ft_elbow'].clear()
-    world.run(100)
-    assert found['ft_elbow'][-1][0] == 100
-    assert found['ft_elbow'][-1][1].force[2] == pytest.approx(4.9, abs=CLOSE)
-
-
-@pytest.mark.parametrize(
-    ('old', 'new', 'sentence'),
-    [
-        ('<jointName>elbow</jointName>', '', 'missing <jointName>, cannot proceed'),
-        ('<topicName>ft_elbow</topicName>', '', 'missing <topicName>, cannot proceed'),
-        ('<jointName>elbow<', '<jointName>knee<', "couldn't get measured joint named knee"),
-    ],
-)
-def test_invalid_plugin_is_left_out_with_an_error(world, old, new, sentence, caplog):
-    assert old in ARM
-    world.spawn(ARM.replace(old, new), 'arm')
-    assert sentence in caplog.text
-    world.run(10)

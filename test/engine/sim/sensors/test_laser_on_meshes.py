@@ -2,11 +2,10 @@
 
 import math
 import threading
-from contextlib import closing
 
 import numpy as np
 import pytest
-from support.sensing import ROBOTS
+from support.sensing import robot_text
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy, rotate
 from rosbots_description.sim.public.world import World
@@ -14,7 +13,7 @@ from rosbots_description.sim.sensors import ray_mesh
 from rosbots_description.sim.sensors.ray_mesh import EmbreeTree, RayMesh
 
 EXACT = 1e-4  # [m]
-ROBOT = (ROBOTS / 'laser_nonoise.urdf').read_text(encoding='utf-8')
+ROBOT = robot_text('laser_nonoise')
 ROOM = """<sdf version="1.6"><model name="m"><static>{static}</static><pose>{pose}</pose>
 <link name="l"><collision name="c"><pose>0.1 0 0 0 0 0.2</pose><laser_retro>7</laser_retro>
 <geometry><mesh><uri>{uri}</uri><scale>1 1 {scale}</scale></mesh></geometry></collision></link>
@@ -91,7 +90,7 @@ def reference(triangles, origins, ways):
 @pytest.mark.parametrize('scale', ['1', '-2'])
 @pytest.mark.parametrize('name', ['box', 'ring'])
 def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, caster, name, scale, pose):
-    with closing(World()) as world:
+    with World() as world:
         robot = world.spawn(ROBOT)
         model = world.spawn(
             ROOM.format(static=1, pose=pose, uri=folder / f'{name}.obj', scale=scale)
@@ -115,7 +114,7 @@ def test_ray_hits_are_on_the_triangles_of_a_mesh(folder, caster, name, scale, po
 
 
 def test_moving_mesh_is_hit_at_its_pose(folder, caster):
-    with closing(World()) as world:
+    with World() as world:
         sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')
         model = world.spawn(
             ROOM.format(static=0, pose='0 0 0 0 0 0', uri=folder / 'box.obj', scale=1)
@@ -158,7 +157,7 @@ def test_meshes_are_built_from_the_spawn_on(folder, monkeypatch, sensor_first):
     start = threading.Thread.start
     monkeypatch.setattr(threading.Thread, 'start', lambda one: builders.append(one) or start(one))
     room = ROOM.format(static=1, pose='0 0 0 0 0 0', uri=folder / 'box.obj', scale=1)
-    with closing(World()) as world:
+    with World() as world:
         for text in (ROBOT, room) if sensor_first else (room, ROBOT):
             world.spawn(text)
         assert [one.name for one in builders] == ['ray meshes']
@@ -170,7 +169,7 @@ def test_meshes_are_built_from_the_spawn_on(folder, monkeypatch, sensor_first):
 def test_missing_mesh_is_reported_once_and_not_hit(folder, tmp_path, caplog):
     file = tmp_path / 'box.obj'
     file.write_bytes((folder / 'box.obj').read_bytes())
-    with closing(World()) as world:
+    with World() as world:
         world.spawn(ROOM.format(static=1, pose='4 0 0 0 0 0', uri=file, scale=1))
         file.unlink()
         sensor = world.spawn(ROBOT).sensor('head_hokuyo_sensor')

@@ -1,23 +1,16 @@
 """Outputs of range finders and block lasers agree with Gazebo's recordings."""
 
 import io
-from contextlib import closing
 
 import numpy as np
 import pytest
-from support.sensing import RECORDED, ROBOTS, recorded_scene, recordings
+from support.sensing import ROBOTS, box_sdf, recorded_scene, recordings, timed
 
 from rosbots_description.ros_api.adapters.ray_sensors import range_message
-from rosbots_description.sim.public.world import World
 from rosbots_description.sim.sensors.noise import gaussian
 
 RECORDINGS = recordings('ray_plugins')
 EXACT = 1e-5  # [m]
-WALL = (
-    '<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
-    '<collision name="c"><geometry><box><size>.1 9 2</size></box></geometry>'
-    '</collision></link></model></sdf>'
-)
 
 
 def reading_of(robot, library, output):
@@ -30,10 +23,7 @@ def reading_of(robot, library, output):
 
 def readings_of(world, robot, library, output, steps):
     """Return times [ms] and readings that a plugin sends in so many steps."""
-    found = []
-    robot.plugin(library).outputs[output].connect(
-        lambda reading: found.append((world.clock.now_ns // 1_000_000, reading))
-    )
+    found = timed(world, robot.plugin(library).outputs[output])
     world.run(steps)
     return found
 
@@ -41,7 +31,7 @@ def readings_of(world, robot, library, output, steps):
 def test_points_of_a_block_laser_agree_with_the_recording():
     recording = RECORDINGS['laser_block']
     world, robot = recorded_scene(recording)
-    with closing(world):
+    with world:
         points = reading_of(robot, 'block_laser', 'points')
     assert np.abs(points.positions - np.array(recording['points'])).max() < EXACT
     assert np.array_equal(points.intensities, recording['intensities'])
@@ -50,7 +40,7 @@ def test_points_of_a_block_laser_agree_with_the_recording():
 @pytest.mark.parametrize('name', ['range', 'range_miss', 'range_noise_ir'])
 def test_message_of_a_range_finder_agrees_with_the_recording(name):
     world, robot = recorded_scene(RECORDINGS[name])
-    with closing(world):
+    with world:
         message = range_message(reading_of(robot, 'range', 'range'))
     for field, expected in RECORDINGS[name]['message'].items():
         assert getattr(message, field) == pytest.approx(expected, abs=EXACT)
@@ -58,17 +48,16 @@ def test_message_of_a_range_finder_agrees_with_the_recording(name):
 
 def test_range_finder_has_its_own_mean_rate():
     world, robot = recorded_scene(RECORDINGS['range_noise_ir'])  # 20 Hz in a sensor of 50 Hz
-    with closing(world):
+    with world:
         times = [time for time, _ in readings_of(world, robot, 'range', 'range', 1000)]
     assert len(times) == 20
     assert set(np.diff(times)) == {40, 60}
 
 
-def test_noise_of_a_range_finder_is_limited_to_its_range():
-    with closing(World.from_file(RECORDED / 'worlds' / 'scene_a.world')) as world:
-        robot = world.spawn(ROBOTS / 'range_noise_ir.urdf', 'robot')
-        world.spawn(WALL, x=2.15, name='wall')  # 1.98 m before the laser
-        ranges = [one.range for _, one in readings_of(world, robot, 'range', 'range', 5000)]
+def test_noise_of_a_range_finder_is_limited_to_its_range(scene):
+    robot = scene.spawn(ROBOTS / 'range_noise_ir.urdf', 'robot')
+    scene.spawn(box_sdf('.1 9 2', 'wall'), x=2.15)  # 1.98 m before the laser
+    ranges = [one.range for _, one in readings_of(scene, robot, 'range', 'range', 5000)]
     assert max(ranges) == 2.0
     assert 1.92 < min(ranges) < 1.97
     assert len(set(ranges)) > 50
@@ -77,7 +66,7 @@ def test_noise_of_a_range_finder_is_limited_to_its_range():
 @pytest.mark.parametrize('deviation', [1e30, 1e39, 1e300])
 def test_any_noise_fits_the_message_of_a_range_finder(deviation):
     world, robot = recorded_scene(RECORDINGS['range'])
-    with closing(world):
+    with world:
         robot.plugin('range').noise = gaussian(deviation, '<gaussianNoise>')
         found = [reading for _, reading in readings_of(world, robot, 'range', 'range', 1000)]
     for reading in found:

@@ -7,7 +7,6 @@ import socket
 import subprocess
 import sys
 import time
-from contextlib import closing
 
 import numpy as np
 import pytest
@@ -67,7 +66,7 @@ def test_stopped_render_process_is_replaced(scene, caplog, paced):
 
 
 def test_world_with_a_stopped_render_process_can_be_closed():
-    with closing(recorded_world()) as world:
+    with recorded_world() as world:
         spawn_robot(world, 'camera_320')[1].read()
         stopped = process_of(world)
         os.kill(stopped, signal.SIGSTOP)

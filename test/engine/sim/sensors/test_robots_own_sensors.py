@@ -1,6 +1,6 @@
 """The sensors of the robot's xacro see what they are there for, and do not change how it drives."""
 
-from contextlib import closing
+from contextlib import ExitStack
 
 import numpy as np
 import pytest
@@ -18,19 +18,16 @@ ALL = ('camera', 'imu', 'laser', 'bumper')
 @pytest.fixture
 def spawn():
     """Return a function (world, arguments, place) -> world and robot, which stands."""
-    worlds = []
+    with ExitStack() as worlds:
 
-    def spawn_robot(name='empty', arguments=ALL, x=0.0, **more):
-        world = World.from_file(name)
-        worlds.append(closing(world))
-        text = robot_urdf(**dict.fromkeys(arguments, 'true'), **more)
-        robot = world.spawn(text, 'rosbots', x=x, z=HEIGHT)
-        world.run(STANDING)
-        return world, robot
+        def spawn_robot(name='empty', arguments=ALL, x=0.0, **more):
+            world = worlds.enter_context(World.from_file(name))
+            text = robot_urdf(**dict.fromkeys(arguments, 'true'), **more)
+            robot = world.spawn(text, 'rosbots', x=x, z=HEIGHT)
+            world.run(STANDING)
+            return world, robot
 
-    yield spawn_robot
-    for world in worlds:
-        world.__exit__(None, None, None)
+        yield spawn_robot
 
 
 def readings(robot, plugin, output):

@@ -2,11 +2,11 @@
 
 import logging
 import math
-from contextlib import closing
 
 import numpy as np
 import pytest
 from sensor_msgs.point_cloud2 import read_points
+from support.sensing import box_sdf
 
 from rosbots_description.ros_api.adapters.ray_sensors import ring_cloud_message
 from rosbots_description.sim.public.world import World
@@ -19,18 +19,14 @@ ROBOT = """<sdf version="1.6"><model name="car"><static>1</static><link name="l"
 <max_angle>0.2</max_angle></vertical></scan><range><min>0.3</min><max>20</max></range></ray>
 <plugin name="plugin" filename="libgazebo_ros_velodyne_{library}.so">{tags}</plugin>
 </sensor></link></model></sdf>"""
-WALL = (
-    '<sdf version="1.6"><model name="wall"><static>1</static><link name="l">'
-    '<collision name="c"><laser_retro>{retro}</laser_retro><geometry><box><size>.2 {wide} 9'
-    '</size></box></geometry></collision></link></model></sdf>'
-)
+WALL = box_sdf('.2 4 9', 'wall', more='<laser_retro>7</laser_retro>')
 YAWS, PITCHES = np.linspace(-1.5, 1.5, 8), np.linspace(-0.2, 0.2, 3)
 
 
 @pytest.fixture
 def world():
-    with closing(World()) as made:
-        made.spawn(WALL.format(retro=7, wide=4), 'wall', x=2.1)  # a plane at x = 2
+    with World() as made:
+        made.spawn(WALL, x=2.1)  # a plane at x = 2
         yield made
 
 
@@ -104,10 +100,8 @@ def test_surfaces_of_low_intensity_are_left_out_and_noise_has_its_deviation(worl
     assert plugin.cloud.newest.points[0]['x'].tolist() != noisy[0].tolist()
 
 
-def test_the_message_has_upstreams_fields():
-    with closing(World()) as world:
-        world.spawn(WALL.format(retro=7, wide=4), 'wall', x=2.1)
-        message = ring_cloud_message(cloud_of(world))
+def test_the_message_has_upstreams_fields(world):
+    message = ring_cloud_message(cloud_of(world))
     assert [(field.name, field.offset, field.datatype) for field in message.fields] == [
         ('x', 0, 7),
         ('y', 4, 7),

@@ -59,6 +59,7 @@ def test_counts_are_from_1_to_a_limit(text, expected):
         ),
         ('<h><samples>4</samples><resolution>0.5</resolution></h>', Sweep(4, 2, 0.0, 0.0)),
         ('<h><samples>4</samples><resolution>2.4</resolution></h>', Sweep(4, 9, 0.0, 0.0)),
+        ('<h><min_angle>-1.570796</min_angle></h>', Sweep(7, 7, -1.5708, 0.0)),  # of six digits
         ('<h><samples>1000000</samples></h>', Sweep(1_000_000, 1_000_000, 0.0, 0.0)),
         ('<h><samples>2</samples><resolution>0.5</resolution></h>', Sweep(2, 1, 0.0, 0.0)),
         ('<h/>', Sweep(7, 7, 0.0, 0.0)),
@@ -152,6 +153,8 @@ def test_camera_is_as_its_element_says():
         ('<horizontal_fov>3.141</horizontal_fov>', 'more than 0 and less than pi'),
         ('<clip><near>0</near></clip>', 'near must be above 0 and below far'),
         ('<clip><near>2</near><far>2</far></clip>', 'near must be above 0 and below far'),
+        ('<horizontal_fov>nan</horizontal_fov>', 'it takes a finite number'),
+        ('<noise><type>gaussian</type><stddev>nan</stddev></noise>', 'it takes a finite number'),
         ('<image><width>8193</width></image>', 'from 1 to 8192'),
         ('<image><height>0</height></image>', 'from 1 to 8192'),
     ],
@@ -159,6 +162,13 @@ def test_camera_is_as_its_element_says():
 def test_camera_that_cannot_be_is_refused(inside, sentence):
     with pytest.raises(PluginError, match=sentence):
         camera(inside)
+
+
+def test_focal_length_is_that_of_published_camera_info_messages():
+    lens = camera(
+        '<horizontal_fov>1.3962634</horizontal_fov><image><width>800</width></image>'
+    ).lens
+    assert lens.focal_length == pytest.approx(476.7030836014194, abs=1e-12)
 
 
 @pytest.mark.parametrize('field', [0.001, 3.1405])
