@@ -35,6 +35,7 @@ from .messages import (
     shortened,
     source_of,
     suggestion,
+    warn,
     warning,
 )
 from .numbers import parse_number, parse_numbers
@@ -137,6 +138,7 @@ __all__ = [
     'subtract',
     'suggestion',
     'to_rpy',
+    'warn',
     'warning',
     'worst_first',
     'yaw_of',

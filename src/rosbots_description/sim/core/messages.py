@@ -121,6 +121,11 @@ def warning(element: 'etree._Element', sentence: str, cure: str = '') -> Fault:
     return Fault(f'{location(element)}: {sentence}', cure=cure, **place(element))
 
 
+def warn(notes: list[Fault], element: 'etree._Element', sentence: str, cure: str = '') -> None:
+    """Add a warning about `element`, unless there are too many notes already."""
+    note(notes, lambda: warning(element, sentence, cure))
+
+
 def note(notes: list[Fault], made: Callable[[], Fault]) -> None:
     """Add what `made` returns, unless there are too many notes already."""
     if len(notes) < MAX_NOTES:

@@ -18,6 +18,7 @@ from ...core import (
     note,
     shortened,
     suggestion,
+    warn,
     warning,
 )
 from ...description import (
@@ -261,13 +262,11 @@ def read_urdf_joint(
         )
     parent, child = _end(element, 'parent'), _end(element, 'child')
     if kind == FREE:
-        note(
+        warn(
             notes,
-            lambda: warning(
-                element,
-                f'a {written} joint imposes no constraint here; '
-                f"'{shortened(child, 60)}' and its descendants move freely",
-            ),
+            element,
+            f'a {written} joint imposes no constraint here; '
+            f"'{shortened(child, 60)}' and its descendants move freely",
         )
     if kind in (FIXED, FREE):
         is_reduced = kind == FIXED and name not in kept
@@ -309,14 +308,8 @@ def _axis(element: etree._Element, notes: list[Fault]) -> Vector:
     x, y, z = numbers(axis, 'xyz', (1.0, 0.0, 0.0))
     largest = max(abs(x), abs(y), abs(z))
     if largest == 0.0:
-        note(
-            notes,
-            lambda: warning(
-                axis,
-                f'xyz="{axis.get("xyz")}" of <axis> has no direction, x is used, as in Gazebo',
-                'write e.g. "0 0 1"',
-            ),
-        )
+        what = f'xyz="{axis.get("xyz")}" of <axis> has no direction, x is used, as in Gazebo'
+        warn(notes, axis, what, 'write e.g. "0 0 1"')
         return (1.0, 0.0, 0.0)
     # Scale first, so that no square underflows or overflows.
     x, y, z = x / largest, y / largest, z / largest
@@ -329,15 +322,8 @@ def _not_negative(element: etree._Element | None, attribute: str, notes: list[Fa
         return 0.0
     value = number(element, attribute, 0.0)
     if value < 0.0:
-        note(
-            notes,
-            lambda: warning(
-                element,
-                f'{attribute}="{element.get(attribute)}" of '
-                f'<{element.tag}> is '
-                'negative; 0 is used, as it can only dissipate energy',
-            ),
-        )
+        what = f'{attribute}="{element.get(attribute)}" of <{element.tag}> is negative'
+        warn(notes, element, f'{what}; 0 is used, as it can only dissipate energy')
     return max(0.0, value)
 
 
@@ -362,15 +348,9 @@ def _limits(element: etree._Element, written: str, notes: list[Fault]) -> Limits
     if written == 'continuous':
         return limits
     if lower > upper:
-        low, high = upper, lower
-        note(
-            notes,
-            lambda: warning(
-                limit,
-                f'lower limit {high:g} is above upper limit {low:g}; the two are swapped',
-            ),
-        )
-        lower, upper = low, high
+        what = f'lower limit {lower:g} is above upper limit {upper:g}; the two are swapped'
+        warn(notes, limit, what)
+        lower, upper = upper, lower
     if math.isfinite(lower):
         limits['lower'] = lower
     if math.isfinite(upper):

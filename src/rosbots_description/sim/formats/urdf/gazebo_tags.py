@@ -23,6 +23,7 @@ from ...core import (
     parse_number,
     shortened,
     suggestion,
+    warn,
     warning,
 )
 from ...description import (
@@ -41,6 +42,7 @@ from ..xml import (
     LeftOut,
     boolean,
     is_endless,
+    listed,
     read_sensor,
     scalar,
     scalar_number,
@@ -114,24 +116,13 @@ def _leading_numbers(block: etree._Element, tags: GazeboTags) -> None:
         if child.tag not in _NUMBER_TAGS or parse_number(scalar(child)) is not None:
             continue
         if not scalar(child):
-            note(
-                tags.notes,
-                partial(warning, child, f'<{child.tag}> is empty and ignored', 'give it a number'),
-            )
+            warn(tags.notes, child, f'<{child.tag}> is empty and ignored', 'give it a number')
             block.remove(child)
             continue
         found = _LEADING_NUMBER.match(scalar(child))
         if found and not is_endless(child):
-            written = scalar(child)
-            note(
-                tags.notes,
-                partial(
-                    warning,
-                    child,
-                    f'of <{child.tag}> {shortened(written, 60)!r} only the number {found[0]} is '
-                    'read, as in Gazebo',
-                ),
-            )
+            written = f'of <{child.tag}> {shortened(scalar(child), 60)!r}'
+            warn(tags.notes, child, f'{written} only the number {found[0]} is read, as in Gazebo')
             child.attrib.pop('value', '')
             child.text = found[0]
 
@@ -165,11 +156,8 @@ def read_gazebo_tags(
         if reference not in links and reference not in joints:
             note(tags.notes, partial(_unknown, block, reference, [*links, *joints]))
     if unread:
-        listed = list(dict.fromkeys(unread))
-        more = f' and {len(listed) - MAX_NOTES} more' if len(listed) > MAX_NOTES else ''
-        tags.notes.append(
-            Fault('not simulated in <gazebo> blocks: ' + ', '.join(listed[:MAX_NOTES]) + more)
-        )
+        mentioned = listed(list(dict.fromkeys(unread)), MAX_NOTES)
+        tags.notes.append(Fault(f'not simulated in <gazebo> blocks: {mentioned}'))
     return tags
 
 
@@ -195,14 +183,8 @@ def _read_model_block(block: etree._Element, tags: GazeboTags, unread: list[str]
 def _read_plugin(element: etree._Element, tags: GazeboTags) -> None:
     filename = element.get('filename', '').strip()
     if not filename:
-        note(
-            tags.notes,
-            lambda: warning(
-                element,
-                'a <plugin> without filename is ignored',
-                'add filename="libgazebo_ros_….so"',
-            ),
-        )
+        cure = 'add filename="libgazebo_ros_….so"'
+        warn(tags.notes, element, 'a <plugin> without filename is ignored', cure)
         return
     tags.plugins.append(PluginSpec(element.get('name', ''), filename, to_element(element)))
 
@@ -234,17 +216,13 @@ def _read_part(
 ) -> None:
     match element.tag:
         case 'sensor':
-            link.sensors.append(read_sensor(element, partial(_warn, tags)))
+            link.sensors.append(read_sensor(element, partial(warn, tags.notes)))
         case 'plugin':
             _mention_plugin(element, tags)
         case tag:
             if tag in _PARTS:
                 link.parts.append(to_element(element))
             unread.append(_mention(element))
-
-
-def _warn(tags: GazeboTags, element: etree._Element, sentence: str) -> None:
-    note(tags.notes, partial(warning, element, sentence))
 
 
 def _mention_plugin(element: etree._Element, tags: GazeboTags) -> None:
@@ -264,15 +242,9 @@ def _read_script(element: etree._Element, link: LinkTags, tags: GazeboTags) -> N
     block = next(element.iterancestors('material'), element)
     material = gazebo_material(script) or script_material(block, script, tags.addresses)
     if material is None:
-        note(
-            tags.notes,
-            lambda: warning(
-                element,
-                f"material '{shortened(script, 60)}' is neither one of "
-                "Gazebo's nor in a script along GAZEBO_RESOURCE_PATH; grey is shown",
-                'write e.g. Gazebo/Red',
-            ),
-        )
+        what = f"material '{shortened(script, 60)}' is neither one of Gazebo's nor in a script"
+        what += ' along GAZEBO_RESOURCE_PATH; grey is shown'
+        warn(tags.notes, element, what, 'write e.g. Gazebo/Red')
         material = Material(script=script)
     link.material = material
 

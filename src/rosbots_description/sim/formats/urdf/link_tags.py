@@ -74,24 +74,15 @@ def apply_tags(link: TreeLink, tags: LinkTags | None) -> TreeLink:
     """Return the link with the shapes, flags and sensors that its blocks specify."""
     if tags is None:
         return link
-    spec: LinkSpec = link.spec
-    collisions = (
-        tuple(
+    spec: LinkSpec = replace(
+        link.spec,
+        collisions=tuple(
             replace(shape, surface=replace(shape.surface, **tags.surface))
-            for shape in spec.collisions
-        )
-        if tags.surface
-        else spec.collisions
-    )
-    visuals = (
-        tuple(replace(shape, material=tags.material) for shape in spec.visuals)
-        if tags.material
-        else spec.visuals
-    )
-    spec = replace(
-        spec,
-        collisions=collisions,
-        visuals=visuals,
+            for shape in link.spec.collisions
+        ),
+        visuals=tuple(
+            replace(shape, material=tags.material or shape.material) for shape in link.spec.visuals
+        ),
         sensors=tuple(tags.sensors),
         parts=tuple(tags.parts),
         **tags.flags,

@@ -7,8 +7,10 @@ expression is plain text. Where a number is needed that is an error; see `values
 from lxml import etree
 
 from ...core import line_of, shortened
+from .omissions import listed
 from .values import XACRO_CURE, attributes_of, is_expression, tag_of
 
+_MOST = 6  # tags and expressions that a warning lists
 _XACRO = 'xacro:'
 _OWN = ('gazebo', 'plugin', 'sensor')  # their content is interpreted by their readers
 
@@ -21,10 +23,11 @@ def remove_xacro(root: etree._Element) -> list[str]:
         parent.remove(element)
     notes = []
     if shown:
-        notes.append(f'unexpanded xacro is ignored: {_listed(shown)}; {XACRO_CURE}')
+        notes.append(f'unexpanded xacro is ignored: {listed(shown, _MOST)}; {XACRO_CURE}')
     expressions = _expressions(root)
     if expressions:
-        notes.append(f'unexpanded xacro is taken literally: {_listed(expressions)}; {XACRO_CURE}')
+        written = listed(expressions, _MOST)
+        notes.append(f'unexpanded xacro is taken literally: {written}; {XACRO_CURE}')
     return notes
 
 
@@ -37,7 +40,7 @@ def foreign_tags(robot: etree._Element) -> list[str]:
         for element in child.iter(etree.Element)
         if ':' in tag_of(element)
     ]
-    return [f'tags of another namespace are ignored: {_listed(shown)}'] if shown else []
+    return [f'tags of another namespace are ignored: {listed(shown, _MOST)}'] if shown else []
 
 
 def _outermost(parent: etree._Element) -> list[tuple[etree._Element, etree._Element]]:
@@ -64,9 +67,3 @@ def _expressions(root: etree._Element) -> list[str]:
             if is_expression(value)
         ]
     return found
-
-
-def _listed(shown: list[str]) -> str:
-    most = 6
-    more = f' and {len(shown) - most} more' if len(shown) > most else ''
-    return ', '.join(shown[:most]) + more

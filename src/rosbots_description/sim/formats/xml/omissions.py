@@ -12,11 +12,10 @@ from ...core import (
     ModelError,
     ShapeError,
     line_of,
-    note,
     owner,
     place,
     shortened,
-    warning,
+    warn,
 )
 
 
@@ -44,7 +43,7 @@ class LeftOut:
             users.append(f'{element.tag} of {owner(element)} ({line_of(element)})')
             self.parts.append(f"mesh '{shortened(error.uri, 100)}'")
             return
-        note(self.warnings, lambda: warning(element, f'{error}; the {element.tag} is left out'))
+        warn(self.warnings, element, f'{error}; the {element.tag} is left out')
         self.parts.append(f'{element.tag} of {owner(element)}')
 
     def part(self, called: str, error: ModelError) -> None:
