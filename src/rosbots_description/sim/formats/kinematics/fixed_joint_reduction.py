@@ -9,9 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from lxml import etree
-
-from ...core import IDENTITY, ModelError, Pose, compose, fault
+from ...core import IDENTITY, Pose, compose, fault
 from ...description import (
     WORLD,
     Collision,
@@ -24,7 +22,7 @@ from ...description import (
 )
 from ...description.inertia import merge
 from .frame_references import move_part, move_sensor
-from .kinematic_tree import FREE, KinematicTree, LinkFlags, TreeJoint
+from .kinematic_tree import FREE, KinematicTree, LinkFlags
 
 _LUMPED = '_fixed_joint_lump__'
 
@@ -59,9 +57,9 @@ def reduce_fixed_joints(tree: KinematicTree) -> Reduction:
     poses = _poses_in_model(tree, order)
     kept = [name for name in order if name in members]
     joints = tuple(
-        _reattach(tree.joint_to[name], homes)
-        for name in kept
-        if name in tree.joint_to and tree.joint_to[name].spec.type != FREE
+        replace(joint.spec, parent=homes[joint.spec.parent][0])
+        for joint in (tree.joint_to[name] for name in kept if name in tree.joint_to)
+        if joint.spec.type != FREE
     )
     return Reduction(
         links=tuple(_merge_link(tree, name, members[name], homes, poses) for name in kept),
@@ -131,10 +129,6 @@ def _poses_in_model(tree: KinematicTree, order: Sequence[str]) -> dict[str, Pose
         joint = tree.joint_to.get(name)
         poses[name] = compose(poses[joint.spec.parent], joint.origin) if joint else IDENTITY
     return poses
-
-
-def _reattach(joint: TreeJoint, homes: Mapping[str, tuple[str, Pose]]) -> JointSpec:
-    return replace(joint.spec, parent=homes[joint.spec.parent][0])
 
 
 def _merge_link(
@@ -210,16 +204,13 @@ def require_links(tree: KinematicTree, reduction: Reduction) -> None:
     Raises:
         ModelError: no link has a mass.
     """
-    if not reduction.links:
-        first = tree.links[next(iter(reduction.massless), tree.root)]
-        raise _nothing_left(first.spec.name, first.element)
-
-
-def _nothing_left(name: str, element: etree._Element) -> ModelError:
-    if name == WORLD:
-        return fault(element, 'the model has no link but the world; add a link with a mass')
-    return fault(
-        element,
+    if reduction.links:
+        return
+    first = tree.links[next(iter(reduction.massless), tree.root)]
+    if first.spec.name == WORLD:
+        raise fault(first.element, 'the model has no link but the world; add a link with a mass')
+    raise fault(
+        first.element,
         'it has no mass, so no link of the model can be simulated; give it an <inertial> with '
         'a <mass> greater than zero and an <inertia>',
     )

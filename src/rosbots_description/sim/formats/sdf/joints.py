@@ -32,9 +32,8 @@ _AXIS_IN_JOINT, _AXIS_BY_NAME = (1, 5), (1, 7)
 
 def add_joint_frame(frames: Frames, element: etree._Element) -> None:
     """Add a joint's frame, which is posed in the child's and attached to it."""
-    child = text_of(element, 'child')
-    base = '' if child == WORLD else child
-    frames.add(required_name(element), element, base, carrier=child or None)
+    carrier = text_of(element, 'child') or None
+    frames.add(required_name(element), element, _child_frame(element), carrier)
 
 
 def read_sdf_joint(

@@ -72,7 +72,7 @@ def read_model(
     nested = _nested_models(document, element, True if static else None)
     frames = _frames(element, nested)
     for child in element.iterfind('plugin'):
-        _add_plugin(document, child, parts)
+        add_plugin(document, child, parts.plugins)
     self_collide = boolean_of(element, 'self_collide')
     parts.links = [
         read_link(document, child, frames, parts.static, self_collide)
@@ -154,7 +154,7 @@ def read_include(
     if element.find('pose') is not None:
         parts.pose_element = element.find('pose')
     for child in element.iterfind('plugin'):
-        _add_plugin(document, child, parts)
+        add_plugin(document, child, parts.plugins)
     return parts
 
 
@@ -261,22 +261,14 @@ def _scoped_sensor(sensor: SensorSpec, names: Collection[str], prefix: str) -> S
     )
 
 
-def _add_plugin(document: SdfDocument, element: etree._Element, parts: ModelParts) -> None:
-    plugin = read_plugin(document, element)
-    if plugin is not None:
-        parts.plugins.append(plugin)
-
-
-def read_plugin(document: SdfDocument, element: etree._Element) -> PluginSpec | None:
-    """Return a <plugin>; one without a filename is noted and ignored."""
+def add_plugin(document: SdfDocument, element: etree._Element, plugins: list[PluginSpec]) -> None:
+    """Add a <plugin>; one without a filename is noted and ignored."""
     filename = element.get('filename', '').strip()
-    if not filename:
-        document.notes.warn(
-            element,
-            'a <plugin> without filename is ignored; add filename="libgazebo_ros_….so"',
-        )
-        return None
-    return PluginSpec(element.get('name', ''), filename, to_element(element))
+    if filename:
+        plugins.append(PluginSpec(element.get('name', ''), filename, to_element(element)))
+    else:
+        what = 'a <plugin> without filename is ignored; add filename="libgazebo_ros_….so"'
+        document.notes.warn(element, what)
 
 
 def _movable(

@@ -25,7 +25,7 @@ from ..xml import listed, required_name, to_element
 from .document import SdfDocument, SdfLibrary
 from .frames import Frames
 from .lights import read_light
-from .models import ModelParts, model_spec, read_include, read_model, read_plugin
+from .models import ModelParts, add_plugin, model_spec, read_include, read_model
 from .physics import read_physics
 from .scene import READ_OF_SCENE, read_scene, read_user_camera
 from .state import read_states
@@ -252,9 +252,7 @@ def _read_light(
 def _read_plugin(
     document: SdfDocument, element: etree._Element, frames: Frames, content: _Content
 ) -> None:
-    plugin = read_plugin(document, element)
-    if plugin is not None:
-        content.plugins.append(plugin)
+    add_plugin(document, element, content.plugins)
 
 
 _READERS = {
