@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -82,6 +81,12 @@ def tensor(inertial: Inertial) -> FloatArray:
     )
 
 
+def _with_tensor(mass: float, pose: Pose, full: FloatArray) -> Inertial:
+    """Return mass properties with a tensor (3, 3) in the axes of `pose`."""
+    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = full.tolist()
+    return Inertial(mass, pose, ixx, iyy, izz, ixy, ixz, iyz)
+
+
 def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
     """Return the mass properties of rigidly connected parts (parallel axis theorem).
 
@@ -105,33 +110,14 @@ def merge(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
         arm = np.array(pose.position) - centre
         total += turn @ tensor(inertial) @ turn.T
         total += inertial.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    mass, centre, total = round(mass, _DIGITS), rounded(centre), rounded(total)
-    return Inertial(
-        mass,
-        Pose(as_vector(centre)),
-        ixx=float(total[0, 0]),
-        iyy=float(total[1, 1]),
-        izz=float(total[2, 2]),
-        ixy=float(total[0, 1]),
-        ixz=float(total[0, 2]),
-        iyz=float(total[1, 2]),
-    )
+    return _with_tensor(round(mass, _DIGITS), Pose(as_vector(rounded(centre))), rounded(total))
 
 
 def in_link_axes(inertial: Inertial) -> Inertial:
     """Return the same mass properties with the tensor in the axes of the link."""
     turn = _matrix(inertial.pose.orientation)
     total = rounded(turn @ tensor(inertial) @ turn.T)
-    return Inertial(
-        inertial.mass,
-        Pose(inertial.pose.position),
-        ixx=float(total[0, 0]),
-        iyy=float(total[1, 1]),
-        izz=float(total[2, 2]),
-        ixy=float(total[0, 1]),
-        ixz=float(total[0, 2]),
-        iyz=float(total[1, 2]),
-    )
+    return _with_tensor(inertial.mass, Pose(inertial.pose.position), total)
 
 
 def possible(inertial: Inertial) -> Inertial:
@@ -148,15 +134,7 @@ def possible(inertial: Inertial) -> Inertial:
     if not negative and 2.0 * greatest - sum(moments) <= ROUNDING * greatest:
         return inertial
     nearest = rounded(axes @ np.diag(_sums_of_two(moments)) @ axes.T)
-    return replace(
-        inertial,
-        ixx=float(nearest[0, 0]),
-        iyy=float(nearest[1, 1]),
-        izz=float(nearest[2, 2]),
-        ixy=float(nearest[0, 1]),
-        ixz=float(nearest[0, 2]),
-        iyz=float(nearest[1, 2]),
-    )
+    return _with_tensor(inertial.mass, inertial.pose, nearest)
 
 
 def impossible(link: str, given: Inertial, used: Inertial) -> str:
@@ -200,16 +178,7 @@ def regularised(inertial: Inertial) -> Inertial:
         return inertial
     ball = 0.4 * inertial.mass * STAND_IN_RADIUS**2
     ixx, iyy, izz = (moment if moment > zero else ball for moment in moments)
-    return replace(
-        inertial,
-        pose=Pose(inertial.pose.position, axes),
-        ixx=ixx,
-        iyy=iyy,
-        izz=izz,
-        ixy=0.0,
-        ixz=0.0,
-        iyz=0.0,
-    )
+    return Inertial(inertial.mass, Pose(inertial.pose.position, axes), ixx, iyy, izz)
 
 
 def is_positive(inertial: Inertial) -> bool:
