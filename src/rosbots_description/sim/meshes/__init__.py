@@ -3,10 +3,9 @@
 from ..resources import SharedFile
 from .engine_files import EngineFiles
 from .extent import extent, rough_extent
-from .loader import MeshPart, check_mesh, load_readers, read_mesh, visual_parts
+from .loader import MeshPart, check_mesh, load_readers, read_mesh
 from .stl import read_stl
 from .submesh import submesh_file
-from .support_points import support_points
 from .triangle_tree import TriangleTree
 
 __all__ = [
@@ -21,6 +20,4 @@ __all__ = [
     'read_stl',
     'rough_extent',
     'submesh_file',
-    'support_points',
-    'visual_parts',
 ]

@@ -32,46 +32,34 @@ class EngineFiles:
         self._files = SharedFiles('rosbots_meshes_')
 
     def engine_file(self, mesh: Mesh, exact: bool) -> SharedFile:
-        """Return the file of a mesh: its exact surface, or its hull."""
-        make = self.collision_surface if exact else self.collision_hull
-        return make(mesh.path, mesh.scale)
+        """Return the .obj file of a mesh's exact triangles, or the .stl file of its convex hull.
 
-    def collision_hull(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> SharedFile:
-        """Return the .stl file of the convex hull of the whole mesh, for moving bodies.
+        That of the hull holds the points of which the engine computes it; its faces only ensure
+        that every point is used. At most HULL_DIRECTIONS + 6 points, exact for small meshes.
 
-        The file holds the points of which the engine computes the hull; its faces only ensure that
-        every point is used. At most HULL_DIRECTIONS + 6 points, exact for small meshes.
-
+        Args:
+            exact: for static bodies; the hull is for moving ones.
         Raises:
             ModelError: the mesh cannot be read (see `check_mesh`), or nothing can be written.
         """
-        return self._file('hull', path, scale)
-
-    def collision_surface(self, path: str, scale: Vector = (1.0, 1.0, 1.0)) -> SharedFile:
-        """Return the .obj file of the mesh's exact triangles, for static bodies.
-
-        Raises:
-            ModelError: the mesh cannot be read (see `check_mesh`), or nothing can be written.
-        """
-        return self._file('surface', path, scale)
+        data, kind = read_mesh(mesh.path), 'surface' if exact else 'hull'
+        key = hashlib.sha256(repr((kind, data.digest, *map(float, mesh.scale))).encode())
+        # PyBullet loads an .obj as a compound with the hull in it, a .stl as the hull itself.
+        name = f'{kind}_{key.hexdigest()[:32]}.{"obj" if exact else "stl"}'
+        return self._files.get(name) or self._files.write(
+            name, _converted(data, mesh.scale, exact), mesh.path
+        )
 
     def close(self) -> None:
         """Remove all files."""
         self._files.close()
 
-    def _file(self, kind: str, path: str, scale: Vector) -> SharedFile:
-        mesh = read_mesh(path)
-        key = hashlib.sha256(repr((kind, mesh.digest, *map(float, scale))).encode())
-        # PyBullet loads an .obj as a compound with the hull in it, a .stl as the hull itself.
-        name = f'{kind}_{key.hexdigest()[:32]}.{"stl" if kind == "hull" else "obj"}'
-        return self._files.get(name) or self._files.write(name, _converted(kind, mesh, scale), path)
 
-
-def _converted(kind: str, mesh: MeshData, scale: Vector) -> bytes:
+def _converted(mesh: MeshData, scale: Vector, exact: bool) -> bytes:
     """Return the content of an engine file."""
     vertices, faces = mesh.triangles()
     vertices = vertices * np.asarray(scale)
-    if kind == 'hull':
+    if not exact:
         vertices, faces = _hull(vertices[np.unique(faces)])
         return write_stl(vertices[faces])
     if np.prod(np.sign(scale)) < 0.0:

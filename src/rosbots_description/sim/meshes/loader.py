@@ -104,24 +104,14 @@ def mesh_ends(path: str) -> FloatArray:
 
 
 def read_mesh(path: str) -> MeshData:
-    """Return the triangles of a mesh file.
+    """Return the triangles of a mesh file, in parts by colour.
+
+    Colours are the diffuse ones of Collada and of an .obj's .mtl; parts without one are grey.
 
     Raises:
         ModelError: the file is missing, of an unknown format, too big, broken or empty.
     """
     return _read(str(path), *_state(path))  # a plain string: caches hold no file
-
-
-def visual_parts(path: str) -> tuple[tuple[FloatArray, IntArray, FloatArray | None, Colour], ...]:
-    """Return the parts of a mesh file by colour: (vertices, faces, normals or None, rgba).
-
-    Vertices (n, 3) [m], faces (m, 3), normals (n, 3). Colours are the diffuse ones of Collada and
-    of an .obj's .mtl; parts without one are grey.
-
-    Raises:
-        ModelError: as `read_mesh`.
-    """
-    return tuple((p.vertices, p.faces, p.normals, p.rgba) for p in read_mesh(path).parts)
 
 
 def load_readers() -> None:

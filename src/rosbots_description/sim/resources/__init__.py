@@ -22,7 +22,6 @@ from .uris import (
     UnknownPackage,
     refuse_parent_folders,
     substitute_in_tree,
-    substitute_packages,
 )
 from .xml_parser import (
     MAX_XML_BYTES,
@@ -60,7 +59,6 @@ __all__ = [
     'require_world_path',
     'root_tag',
     'substitute_in_tree',
-    'substitute_packages',
     'text_of_upload',
     'within',
     'write_file',

@@ -14,9 +14,10 @@ import pytest
 from support.collada import SCENE, VERTICES, collada
 
 from rosbots_description.sim.core.errors import ModelError
+from rosbots_description.sim.description import Mesh
 from rosbots_description.sim.meshes import engine_files, loader
 from rosbots_description.sim.meshes.engine_files import HULL_DIRECTIONS, EngineFiles
-from rosbots_description.sim.meshes.loader import GREY, check_mesh, read_mesh, visual_parts
+from rosbots_description.sim.meshes.loader import GREY, check_mesh, read_mesh
 from rosbots_description.sim.meshes.stl import read_stl
 
 TRIANGLE = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
@@ -42,6 +43,10 @@ def files():
     made = EngineFiles()
     yield made
     made.close()
+
+
+def hull_file(files, path, scale=(1.0, 1.0, 1.0)):
+    return files.engine_file(Mesh(path, scale), exact=False)
 
 
 def corners(path):
@@ -98,10 +103,10 @@ def test_mirroring_node_keeps_faces_outward(write):
 
 
 def test_colour_of_a_collada_material_is_read(write):
-    ((vertices, faces, _, rgba),) = visual_parts(write('m.dae', collada()))
-    assert vertices.shape == (3, 3)
-    assert faces.shape == (1, 3)
-    assert rgba == pytest.approx((0.2, 0.4, 0.6, 1.0), abs=0.005)
+    (part,) = read_mesh(write('m.dae', collada())).parts
+    assert part.vertices.shape == (3, 3)
+    assert part.faces.shape == (1, 3)
+    assert part.rgba == pytest.approx((0.2, 0.4, 0.6, 1.0), abs=0.005)
 
 
 def test_use_of_a_texture_is_detected(write):
@@ -129,7 +134,7 @@ def test_use_of_a_texture_is_detected(write):
     for material, expected in (('a', True), ('b', True), ('c', False)):
         path = write(f'{material}.obj', f'mtllib m.mtl\nusemtl {material}\n{TRIANGLE}')
         assert read_mesh(path).textured is expected
-        assert visual_parts(path)[0][3] == (1, 0, 0, 1)
+        assert read_mesh(path).parts[0].rgba == (1, 0, 0, 1)
 
 
 def test_obj_has_a_part_for_each_material_grey_without_one(write):
@@ -139,8 +144,8 @@ def test_obj_has_a_part_for_each_material_grey_without_one(write):
         'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n'
         'usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 4\n',
     )
-    assert {part[3] for part in visual_parts(path)} == {(1, 0, 0, 1), (0, 0, 1, 1)}
-    assert visual_parts(write('plain.obj', TRIANGLE))[0][3] == GREY
+    assert {part.rgba for part in read_mesh(path).parts} == {(1, 0, 0, 1), (0, 0, 1, 1)}
+    assert read_mesh(write('plain.obj', TRIANGLE)).parts[0].rgba == GREY
 
 
 def error_message(path):
@@ -264,13 +269,13 @@ def sphere(count):
 
 
 def test_the_hull_of_few_points_is_exact_and_scaled(write, files):
-    points = read_hull(files.collision_hull(write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
+    points = read_hull(hull_file(files, write('m.obj', TRIANGLE), (2.0, 3.0, 4.0)))
     assert points.tolist() == [[0, 0, 0], [0, 3, 0], [2, 0, 0]]
 
 
 def test_hull_of_many_points_is_reduced_and_nearly_fills_the_mesh(write, files):
     path = write('ball.obj', sphere(6000))
-    points = read_hull(files.collision_hull(path))
+    points = read_hull(hull_file(files, path))
     assert len(points) <= HULL_DIRECTIONS + 6
     full, _ = read_mesh(path).triangles()
     np.testing.assert_allclose(points.max(axis=0), full.max(axis=0), rtol=1e-6)
@@ -289,48 +294,48 @@ def test_points_that_coincide_count_once():
 
 def test_hull_ignores_unused_vertices(write, files):
     path = write('m.obj', 'v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n')
-    assert read_hull(files.collision_hull(path)).max() == 1.0
+    assert read_hull(hull_file(files, path)).max() == 1.0
 
 
 def test_surface_is_exact_and_outward_when_mirrored(write, files):
     path = write('m.obj', TRIANGLE)
-    points, faces = read_obj(files.collision_surface(path, (-1.0, 1.0, 1.0)))
+    points, faces = read_obj(files.engine_file(Mesh(path, (-1.0, 1.0, 1.0)), exact=True))
     a, b, c = points[faces[0]]
     assert sorted(points.tolist()) == [[-1, 0, 0], [0, 0, 0], [0, 1, 0]]
     assert np.cross(b - a, c - a)[2] == 1.0
 
 
 def test_equal_meshes_share_one_file(write, files, tmp_path):
-    first = files.collision_hull(write('m.obj', TRIANGLE))
+    first = hull_file(files, write('m.obj', TRIANGLE))
     written = os.stat(first).st_mtime_ns
     other = tmp_path / 'elsewhere'
     other.mkdir()
     (other / 'n.obj').write_text(TRIANGLE)
-    assert files.collision_hull(str(other / 'n.obj')) == first
+    assert hull_file(files, str(other / 'n.obj')) == first
     assert os.stat(first).st_mtime_ns == written
     assert len(os.listdir(os.path.dirname(first))) == 1
 
 
 def test_deleted_file_is_written_again(write, files):
     path = write('m.obj', TRIANGLE)
-    shutil.rmtree(os.path.dirname(files.collision_hull(path)))
-    assert os.path.isfile(files.collision_hull(path))
+    shutil.rmtree(os.path.dirname(hull_file(files, path)))
+    assert os.path.isfile(hull_file(files, path))
 
 
 def test_scale_kind_and_content_have_separate_files(write, files):
     path = write('m.obj', TRIANGLE)
     made = {
-        files.collision_hull(path),
-        files.collision_surface(path),
-        files.collision_hull(path, (1.0, 1.0, math.pi)),
-        files.collision_hull(write('n.obj', TRIANGLE + 'f 3 2 1\n')),
+        hull_file(files, path),
+        files.engine_file(Mesh(path), exact=True),
+        hull_file(files, path, (1.0, 1.0, math.pi)),
+        hull_file(files, write('n.obj', TRIANGLE + 'f 3 2 1\n')),
     }
     assert len(made) == 4
 
 
 def test_file_exists_while_it_is_in_use(write, files):
     path = write('m.obj', TRIANGLE)
-    first, second = files.collision_hull(path), files.collision_hull(path)
+    first, second = hull_file(files, path), hull_file(files, path)
     name = str(first)
     del first
     assert os.path.isfile(name)
@@ -344,10 +349,10 @@ def test_files_in_use_are_kept_with_concurrent_threads(write, files):
 
     def use_repeatedly(number):
         for i in range(100):
-            file = files.collision_hull(paths[(i + number) % 2])
+            file = hull_file(files, paths[(i + number) % 2])
             assert os.path.getsize(file) > 0
 
     with ThreadPoolExecutor(4) as threads:
         list(threads.map(use_repeatedly, range(4)))
-    file = files.collision_hull(paths[0])
+    file = hull_file(files, paths[0])
     assert os.listdir(os.path.dirname(file)) == [os.path.basename(file)]
