@@ -99,30 +99,15 @@ def file_path(element: etree._Element, uri: str) -> str:
     Raises:
         AbsentError: the address has any other form.
     """
-    if uri.startswith('file://'):
-        path = uri.removeprefix('file://')
-    elif '://' in uri:
+    path, cure = uri.removeprefix('file://'), 'use package://PACKAGE/file or file:///path'
+    if path == uri and '://' in uri:
         scheme = uri.split('://', 1)[0]
+        reason = f'{scheme}:// addresses are not read here; {cure}'
         if scheme == 'package':
-            raise fault(
-                element,
-                f"'{uri}': packages cannot be looked up here; use file:///path",
-                AbsentError,
-            )
-        raise fault(
-            element,
-            f"'{uri}': {scheme}:// addresses are not read here; "
-            'use package://PACKAGE/file or file:///path',
-            AbsentError,
-        )
-    else:
-        path = uri
+            reason = 'packages cannot be looked up here; use file:///path'
+        raise fault(element, f"'{uri}': {reason}", AbsentError)
     if not os.path.isabs(path):
-        raise fault(
-            element,
-            f"'{uri}' is no absolute address; use package://PACKAGE/file or file:///path",
-            AbsentError,
-        )
+        raise fault(element, f"'{uri}' is no absolute address; {cure}", AbsentError)
     if '%' in path and not os.path.exists(path):
         path = unquote(path)
     return os.path.normpath(path)
