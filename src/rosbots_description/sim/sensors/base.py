@@ -1,5 +1,6 @@
 """Base classes of sensors, and of the plugins that publish their readings."""
 
+import logging
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -147,6 +148,13 @@ class UnsupportedSensor(Sensor):
     """A sensor of a type that is not simulated."""
 
     measures = False
+
+
+class LogsDefaults:
+    """A plugin that logs the default of a missing tag as information, in upstream's words."""
+
+    missing = staticmethod('missing <{}>, defaults to {}'.format)
+    missing_level = logging.INFO
 
 
 class SensorPlugin(ModelPlugin, Generic[Reading]):

@@ -4,16 +4,15 @@ As in Gazebo, a point lies midway between its neighbouring rays, half a ray besi
 direction, and a ray without a hit gives a point at the maximum range.
 """
 
-import logging
 from typing import NamedTuple
 
 import numpy as np
 
 from ..plugin_registry import register_in_sensor
-from .base import SensorPlugin
+from .base import LogsDefaults, SensorPlugin
 from .noise import gaussian
 from .ray import Floats, RaySensor, Scan
-from .ray_fan import Sweep
+from .ray_fan import Sweep, directions
 
 
 class Points(NamedTuple):
@@ -24,14 +23,12 @@ class Points(NamedTuple):
 
 
 @register_in_sensor('libgazebo_ros_block_laser.so')
-class BlockLaserPlugin(SensorPlugin[Scan]):
+class BlockLaserPlugin(LogsDefaults, SensorPlugin[Scan]):
     """Converts rays to points. Output: `points`."""
 
     sensor_class = RaySensor
     sensor: RaySensor
     prefix = 'Block laser plugin '
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags; two of them are ignored, as upstream."""
@@ -44,8 +41,7 @@ class BlockLaserPlugin(SensorPlugin[Scan]):
         fan = self.sensor.fan
         pitch = _angles(fan.rows, self.sensor.blend.rows)[:, None]
         yaw = _angles(fan.columns, self.sensor.blend.columns)
-        ways = np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
-        self._ways = np.stack(ways, axis=-1).reshape(-1, 3)
+        self._ways = np.stack(directions(pitch, yaw), axis=-1).reshape(-1, 3)
 
     def process(self, _reading: Scan) -> None:
         """Send the points of a sweep."""

@@ -15,6 +15,17 @@ from .camera_outputs import CameraInfo, CompressedImage, Image, StampedInfo
 
 Pictures = Picture | tuple[Picture, ...]
 Value = TypeVar('Value', str, float, bool)
+CALIBRATION_TAGS = (
+    'Cx',
+    'Cy',
+    'focalLength',
+    'hackBaseline',
+    'distortionK1',
+    'distortionK2',
+    'distortionK3',
+    'distortionT1',
+    'distortionT2',
+)
 
 
 class Channel:
@@ -74,20 +85,7 @@ class CameraPlugin(SensorPlugin[Pictures]):
         self.frame = self._value('frameName', '')
         self._topic('imageTopicName', 'image_raw')
         self._topic('cameraInfoTopicName', 'camera_info')
-        self._values = {
-            tag: self._value(tag, 0.0)
-            for tag in (
-                'Cx',
-                'Cy',
-                'focalLength',
-                'hackBaseline',
-                'distortionK1',
-                'distortionK2',
-                'distortionK3',
-                'distortionT1',
-                'distortionT2',
-            )
-        }
+        self._values = {tag: self._value(tag, 0.0) for tag in CALIBRATION_TAGS}
         self._takes_distortion = self._value('autoDistortion', False)
         self.params.ignore('CxPrime')
         self.load_trigger()

@@ -11,7 +11,6 @@ m, as a plane does, comes last. Models of one level come in the order of ODE's l
 the order in which they were spawned, then moving ones from the newest on.
 """
 
-import logging
 import math
 from collections.abc import Mapping
 from functools import cache
@@ -20,7 +19,7 @@ from typing import NamedTuple
 from ..core import Fault, Vector, add, conjugate, cross, report, rotate, subtract
 from ..plugin_registry import register_in_sensor, register_sensor
 from ..runtime import NEVER, CollisionFrame, Model
-from .base import Sensor, SensorPlugin
+from .base import LogsDefaults, Sensor, SensorPlugin
 
 _SMALLEST, _LARGEST = -2, 8  # levels of Gazebo's hash space
 
@@ -151,14 +150,12 @@ def _point(
 
 
 @register_in_sensor('libgazebo_ros_bumper.so')
-class BumperPlugin(SensorPlugin[tuple[ContactPair, ...]]):
+class BumperPlugin(LogsDefaults, SensorPlugin[tuple[ContactPair, ...]]):
     """Publishes contacts, empty readings included. Output: `contacts`."""
 
     sensor_class = ContactSensor
     topic_names: Mapping[str, str] = {'contacts': '<bumperTopicName>'}
     prefix = 'bumper plugin '
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags; <updateRate> is ignored, as upstream."""

@@ -4,13 +4,13 @@ It publishes the wrench of the child on the parent, in the axes of the child and
 origin. Gazebo needs <provideFeedback>; here a joint is measured while the output has readers.
 """
 
-import logging
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ..core import Vector
 from ..plugin_registry import register
 from ..plugins import PeriodicPlugin
+from .base import LogsDefaults
 from .noise import RandomSteps, gaussian, noisy
 
 
@@ -22,14 +22,12 @@ class JointWrench(NamedTuple):
 
 
 @register('libgazebo_ros_ft_sensor.so')
-class JointWrenchPlugin(PeriodicPlugin):
+class JointWrenchPlugin(LogsDefaults, PeriodicPlugin):
     """Publishes the wrench in <jointName>. Output: `wrench`. `frame` is the child's name."""
 
     topic_names: Mapping[str, str] = {'wrench': '<topicName>'}
     prefix = 'ft_sensor plugin '
     strictly_after = False
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
     _measured: object = None  # the body whose joint the engine measures
 
     def load(self) -> None:

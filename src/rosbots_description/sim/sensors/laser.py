@@ -3,24 +3,21 @@
 Tags, defaults and namespaces are those of gazebo_ros_pkgs 2.9.2.
 """
 
-import logging
 from collections.abc import Mapping
 
 from ..plugin_registry import register_in_sensor
-from .base import SensorPlugin
+from .base import LogsDefaults, SensorPlugin
 from .ray import RaySensor, Scan
 
 
 @register_in_sensor('libgazebo_ros_gpu_laser.so')
 @register_in_sensor('libgazebo_ros_laser.so')
-class LaserPlugin(SensorPlugin[Scan]):
+class LaserPlugin(LogsDefaults, SensorPlugin[Scan]):
     """Publishes scans. Output: `scan`, unless <topicName> is empty."""
 
     sensor_class = RaySensor
     topic_names: Mapping[str, str] = {'scan': '<topicName>'}
     prefix = 'Laser plugin '
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
     empty_namespace = '{}'
 
     def load(self) -> None:

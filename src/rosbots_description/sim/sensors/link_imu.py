@@ -5,25 +5,23 @@ the orientation instead of its inverse, and the attitude of a body that fixed jo
 is wrong; so it is here in a strict world only.
 """
 
-import logging
 from collections.abc import Mapping, Sequence
 
 from ..core import IDENTITY, Pose, Twist, Vector, conjugate, from_rpy, multiply, rotate
 from ..plugin_registry import register
 from ..plugins import PeriodicPlugin, offsets_in_gazebo
+from .base import LogsDefaults
 from .imu import ImuReading, mean_acceleration
 from .noise import RandomSteps, gaussian, noisy
 
 
 @register('libgazebo_ros_imu.so')
-class LinkImu(PeriodicPlugin):
+class LinkImu(LogsDefaults, PeriodicPlugin):
     """Publishes orientation, angular velocity and acceleration of <bodyName>. Output: `imu`."""
 
     topic_names: Mapping[str, str] = {'imu': '<topicName>'}
     prefix = 'imu plugin '
     strictly_after = False
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
     _before: tuple[int, Vector] | None = None  # time [ns] and velocity at the previous report
 
     def load(self) -> None:

@@ -1,12 +1,11 @@
 """Range finders: the plugin libgazebo_ros_range.so of gazebo_ros_pkgs 2.9.2."""
 
-import logging
 from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..core import PluginError
 from ..plugin_registry import register_in_sensor
-from .base import SensorPlugin
+from .base import LogsDefaults, SensorPlugin
 from .noise import gaussian, noisy
 from .numbers import MAX_FLOAT32
 from .ray import MAX_ANGLE, RaySensor, Scan
@@ -23,15 +22,13 @@ class Distance(NamedTuple):
 
 
 @register_in_sensor('libgazebo_ros_range.so')
-class RangePlugin(SensorPlugin[Scan]):
+class RangePlugin(LogsDefaults, SensorPlugin[Scan]):
     """Publishes the minimum of all rays. Output: `range`."""
 
     sensor_class = RaySensor
     sensor: RaySensor
     topic_names: Mapping[str, str] = {'range': '<topicName>'}
     prefix = 'Range plugin '
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags.

@@ -17,6 +17,11 @@ _LEVEL = 1e-4  # [m] for rounding
 _ON_AXIS = 1e-200  # [m^2], instead of zero, by which nothing can be divided
 
 
+def directions(pitch: Floats, yaw: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return x, y, z of unit vectors at elevations and azimuths [rad]; the angles broadcast."""
+    return np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
+
+
 @dataclass(frozen=True)
 class Sweep:
     """Angles about one axis: `samples` rays are cast, `count` readings interpolated from them."""
@@ -89,9 +94,8 @@ class RayFan:
     def __init__(self, rows: Sweep, columns: Sweep) -> None:
         self.rows, self.columns = rows, columns
         self.shape = rows.samples, columns.samples
-        yaw, pitch = columns.angles, rows.angles[:, None]
-        parts = np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch) + 0.0 * yaw
-        self.ways = np.stack(parts).reshape(3, -1)  # (3, n) unit vectors in the sensor's frame
+        ways = directions(rows.angles[:, None], columns.angles)
+        self.ways = np.stack(ways).reshape(3, -1)  # (3, n) unit vectors in the sensor's frame
         ends = sorted((columns.angles[0], columns.angles[-1]))
         # Azimuths are modulo 2 pi; these are the full turns within the fan.
         turns = range(math.floor(ends[0] / math.tau - 0.5), math.ceil(ends[1] / math.tau + 0.5) + 1)

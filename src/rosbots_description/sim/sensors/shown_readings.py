@@ -14,6 +14,7 @@ from .camera import CameraSensor
 from .contact import ContactPair, ContactSensor
 from .imu import ImuReading, ImuSensor
 from .ray import RaySensor, Scan
+from .ray_fan import directions
 
 MAX_RAYS = 1000  # that are shown; of more, every second, third … is
 NORMAL = 0.1  # [m] of a shown normal of a contact
@@ -136,12 +137,7 @@ def _scan(sensor: RaySensor, scan: Scan, frame: str) -> ShownReading:
     rows, columns = sensor.vertical, sensor.horizontal
     yaw = np.linspace(scan.angle_min, scan.angle_max, columns.count)
     pitch = np.linspace(rows.least, rows.greatest, rows.count)[:, None]
-    ways = np.stack(
-        np.broadcast_arrays(
-            np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)
-        ),
-        axis=-1,
-    )
+    ways = np.stack(directions(pitch, yaw), axis=-1)
     hit = np.isfinite(scan.ranges)
     return shown_rays(scan.ranges[hit, None] * ways.reshape(-1, 3)[hit], len(hit), frame)
 

@@ -3,7 +3,6 @@
 Tags, defaults, fields and the order of points are those of velodyne_simulator 1.0.12.
 """
 
-import logging
 import math
 from typing import NamedTuple
 
@@ -12,10 +11,10 @@ from numpy.typing import NDArray
 
 from ..core import Fault, report
 from ..plugin_registry import register_in_sensor
-from .base import SensorPlugin
+from .base import LogsDefaults, SensorPlugin
 from .noise import gaussian
 from .ray import RaySensor, Scan
-from .ray_fan import Sweep
+from .ray_fan import Sweep, directions
 
 RING_POINT = np.dtype(
     [
@@ -43,14 +42,12 @@ class RingCloud(NamedTuple):
 
 @register_in_sensor('libgazebo_ros_velodyne_gpu_laser.so')
 @register_in_sensor('libgazebo_ros_velodyne_laser.so')
-class VelodynePlugin(SensorPlugin[Scan]):
+class VelodynePlugin(LogsDefaults, SensorPlugin[Scan]):
     """Converts scans to points with rings. Output: `cloud`, unless <topicName> is empty."""
 
     sensor_class = RaySensor
     sensor: RaySensor
     prefix = 'Velodyne laser plugin '
-    missing = staticmethod('missing <{}>, defaults to {}'.format)
-    missing_level = logging.INFO
 
     def load(self) -> None:
         """Read the tags; the namespace is the prefix of the frame, as upstream."""
@@ -68,12 +65,7 @@ class VelodynePlugin(SensorPlugin[Scan]):
             report(Fault(self.log_prefix + what))
         self.cloud = self.output('cloud', bool(read('topicName', '/points')))
         self._noise = gaussian(read('gaussianNoise', 0.0, '0.0'), '<gaussianNoise>')
-        yaw, pitch = _angles(sensor.horizontal)[:, None], _angles(sensor.vertical)
-        self._ways = (
-            np.cos(pitch) * np.cos(yaw),
-            np.cos(pitch) * np.sin(yaw),
-            np.sin(pitch) + 0.0 * yaw,
-        )
+        self._ways = directions(_angles(sensor.vertical), _angles(sensor.horizontal)[:, None])
 
     def process(self, reading: Scan) -> None:
         """Send the points of a scan."""

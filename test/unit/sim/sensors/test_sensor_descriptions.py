@@ -11,7 +11,7 @@ from rosbots_description.sim.core import PluginError, from_rpy
 from rosbots_description.sim.formats.xml.values import to_element
 from rosbots_description.sim.sensors.camera import CameraSensor
 from rosbots_description.sim.sensors.camera_outputs import CameraInfo
-from rosbots_description.sim.sensors.camera_plugins import CameraPlugin
+from rosbots_description.sim.sensors.camera_plugins import CALIBRATION_TAGS, CameraPlugin
 from rosbots_description.sim.sensors.noise import GaussianNoise, gaussian, read_noise
 from rosbots_description.sim.sensors.numbers import count, number
 from rosbots_description.sim.sensors.ray import read_sweep
@@ -180,22 +180,14 @@ LENS = camera(
     '<horizontal_fov>1.5708</horizontal_fov><distortion><k1>-.1</k1><k2>.2</k2><k3>.3'
     '</k3><p1>.4</p1><p2>.5</p2></distortion>'
 ).lens
-TAGS = (
-    'Cx',
-    'Cy',
-    'focalLength',
-    'hackBaseline',
-    'distortionK1',
-    'distortionK2',
-    'distortionK3',
-    'distortionT1',
-    'distortionT2',
-)
+
+
+UNIT_ROW = (0.0, 0.0, 1.0, 0.0)  # the last one of a projection
 
 
 def calibration(baseline=0.0, takes_distortion=False, **values):
     plugin = object.__new__(CameraPlugin)
-    plugin._values = dict.fromkeys(TAGS, 0.0) | values
+    plugin._values = dict.fromkeys(CALIBRATION_TAGS, 0.0) | values
     plugin._takes_distortion, plugin.frame, plugin.log_prefix = takes_distortion, 'eye', ''
     return plugin.info(LENS, baseline)
 
@@ -233,20 +225,7 @@ def test_calibration_takes_what_tags_say(caplog):
     assert info.distortion == (0.1, 0.2, 0.4, 0.5, 0.3)
     assert info.intrinsics == (focal, 0.0, 1.0, 0.0, focal, 2.0, 0.0, 0.0, 1.0)
     # The baseline [m] is that of the right camera of two: Tx = -f b.
-    assert info.projection == (
-        focal,
-        0.0,
-        1.0,
-        -focal * 0.07,
-        0.0,
-        focal,
-        2.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-    )
+    assert info.projection == (focal, 0.0, 1.0, -focal * 0.07, 0.0, focal, 2.0, 0.0, *UNIT_ROW)
     assert 'does not fit <horizontal_fov>' in caplog.text
 
 
