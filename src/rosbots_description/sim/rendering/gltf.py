@@ -66,26 +66,15 @@ def _parts(visual: Visual) -> tuple[list[_Part], Vector]:
         case Mesh(path, scale):
             return [_mesh_part(part, visual.material) for part in read_mesh(path).parts], scale
         case Plane(normal, (width, depth)):
-            corners = unit_square(normal)
-            faces = np.arange(len(corners)).reshape(-1, 3)
-            return [
-                _Part(
-                    corners[:, :3],
-                    faces,
-                    corners[:, 3:6],
-                    None,
-                    '',
-                    material.rgba,
-                    material.reflection,
-                )
-            ], (width, depth, 1.0)
+            corners, scale = unit_square(normal), (width, depth, 1.0)
+            surface = corners[:, :3], np.arange(len(corners)).reshape(-1, 3), corners[:, 3:6]
         case Box(size):
-            scale = size
+            surface, scale = UNIT_SURFACES[Box](), size
         case Sphere(radius):
-            scale = (2.0 * radius, 2.0 * radius, 2.0 * radius)
+            surface, scale = UNIT_SURFACES[Sphere](), (2.0 * radius, 2.0 * radius, 2.0 * radius)
         case Cylinder(radius, length):
-            scale = (2.0 * radius, 2.0 * radius, length)
-    vertices, faces, normals = UNIT_SURFACES[type(visual.geometry)]()
+            surface, scale = UNIT_SURFACES[Cylinder](), (2.0 * radius, 2.0 * radius, length)
+    vertices, faces, normals = surface
     return [_Part(vertices, faces, normals, None, '', material.rgba, material.reflection)], scale
 
 

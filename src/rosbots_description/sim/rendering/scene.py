@@ -86,11 +86,9 @@ class SceneMirror:
 
         The engine is queried once for each.
         """
-        if not self._links:
-            return np.zeros((0, 7))
-        return np.array(
-            [(*pose.position, *pose.orientation) for pose in (link.pose for link in self._links)]
-        )
+        poses = (link.pose for link in self._links)
+        numbers = [(*position, *orientation) for position, orientation in poses]
+        return np.array(numbers, float).reshape(-1, 7)
 
 
 def visual_parts(

@@ -6,6 +6,7 @@ import os
 import signal
 import socket
 import struct
+from itertools import starmap
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -16,7 +17,7 @@ from .context import NoContextError, open_context
 from .image_pipeline import ImagePipeline
 from .jpeg import jpeg_file
 from .renderer import Renderer
-from .values import Appearance, Colour, Lens, Light, Scene, ScenePart, Wants
+from .values import Appearance, Lens, Light, Scene, ScenePart, Wants
 
 MAX_IMAGE_SIZE = 2048  # [pixels] along an edge; larger ones are scaled down
 NICENESS = 2  # the simulation has priority
@@ -62,28 +63,13 @@ class _Service:
             pixels = np.asarray(image.convert('RGBA' if 'A' in image.getbands() else 'RGB'))
         self._renderer.add_image(path, pixels)
 
-    def _scene(
-        self,
-        parts: list[Any],
-        lights: list[Any],
-        ambient: Colour,
-        background: Colour,
-        shadows: bool,
-        soft: bool,
-    ) -> None:
-        self._renderer.set_scene(
-            Scene(
-                tuple(
-                    ScenePart(key, body, matrix, Appearance(*appearance), *others)
-                    for key, body, matrix, appearance, *others in parts
-                ),
-                tuple(Light(*light) for light in lights),
-                ambient,
-                background,
-                shadows,
-                soft,
-            )
+    def _scene(self, parts: list[Any], lights: list[Any], *others: Any) -> None:
+        """Set the scene; `others` are the further fields of a `Scene`."""
+        made = (
+            ScenePart(key, body, matrix, Appearance(*appearance), *flags)
+            for key, body, matrix, appearance, *flags in parts
         )
+        self._renderer.set_scene(Scene(tuple(made), tuple(starmap(Light, lights)), *others))
 
     def _camera(self, number: int, lens: tuple[Any, ...], size: int) -> None:
         """Add a camera with the shared memory sent along."""
