@@ -36,6 +36,13 @@ def box_sdf(size, name='box', static=True, more=''):
 CUBE = box_sdf('.02 .02 .02')
 
 
+def collected(output):
+    """Return a list that takes the readings from now on."""
+    found = []
+    output.connect(found.append)
+    return found
+
+
 def timed(world, output):
     """Return a list that takes the time [ms] and the reading of each update from now on."""
     found = []

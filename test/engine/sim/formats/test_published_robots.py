@@ -1,7 +1,7 @@
 """Irregular robots, as published and accepted by Gazebo, are simulated with warnings."""
 
 import pytest
-from support import empty_world
+from support import empty_world, urdf
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
@@ -12,21 +12,17 @@ DROP, STEPS = 0.5, 1000  # [m], [ms] until the robot stands
 THICK = 0.1  # [m]
 HIGHEST, LOWEST = 0.6, 0.04  # [m] of the box, lying, tilted or under another one
 
-MASS = '<mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/>'
 BOX = f'<geometry><box size="0.4 0.3 {THICK}"/></geometry>'
-BODY = f'<inertial>{MASS}</inertial><collision>{BOX}</collision><visual>{BOX}</visual>'
+BODY = f'{urdf.inertial(1.0, 0.1)}<collision>{BOX}</collision><visual>{BOX}</visual>'
 PLUGIN = '<plugin name="p" filename="{}"><ns>/</ns><a b="c"><d/></a></plugin>'
 
 
 def link(name='a', inside=BODY):
-    return f'<link name="{name}">{inside}</link>'
+    return urdf.link(name, inside)
 
 
-def joint(kind='continuous', inside='<axis xyz="0 1 0"/>', child='b'):
-    return (
-        f'<joint name="to_{child}" type="{kind}"><parent link="a"/><child link="{child}"/>'
-        f'<origin xyz="0 0 0.3"/>{inside}</joint>'
-    )
+def joint(kind='continuous', inside='<axis xyz="0 1 0"/>'):
+    return urdf.joint('to_b', 'a', 'b', kind, f'<origin xyz="0 0 0.3"/>{inside}')
 
 
 def look(shape='<sphere radius="0.01"/>', more=''):
@@ -38,20 +34,19 @@ def gazebo(inside, reference='a'):
 
 
 TWO = link('a') + link('b')
-NO_MASS = f'<inertial>{MASS}</inertial>'.replace('"1"', '"0"').replace('0.1', '0')
+NO_MASS = urdf.inertial(0, 0)
 # Irregularity -> the robot, and the number of log lines about it.
 ROBOTS = {
     'root without mass': (
-        '<link name="base_footprint"/>'
-        + link()
-        + '<joint name="f" type="fixed"><parent link="base_footprint"/><child link="a"/></joint>',
+        link('base_footprint', '') + link() + urdf.joint('f', 'base_footprint', 'a', 'fixed'),
         0,
     ),
     'frames without anything': (
         link()
-        + '<link name="b"/><link name="c"/>'
+        + link('b', '')
+        + link('c', '')
         + joint('fixed')
-        + '<joint name="o" type="fixed"><parent link="b"/><child link="c"/></joint>',
+        + urdf.joint('o', 'b', 'c', 'fixed'),
         0,
     ),
     'fixed joint with an axis of zeros': (TWO + joint('fixed', '<axis xyz="0 0 0"/>'), 0),

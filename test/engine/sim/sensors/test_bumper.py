@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from support.sensing import ROBOTS, box_sdf, timed
+from support.sensing import ROBOTS, box_sdf, collected, timed
 
 from rosbots_description.ros_api.adapters.contacts import contacts_message
 from rosbots_description.sim.public.world import World
 
 OWN = 'bbot::base_footprint::base_footprint_fixed_joint_lump__base_link_collision'
 GROUND, WALL = 'ground_plane::link::collision', 'wall_1::link::c'
+GROUND_PLANE = '<include><uri>model://ground_plane</uri></include>'
 CLOSE = 0.02  # permitted relative error of a force by the solver
 
 
@@ -124,6 +125,17 @@ def cube(name, size, z, *, static=False):
           <plugin name="bumper" filename="libgazebo_ros_bumper.so"/></sensor></link></model>"""
 
 
+def readings_in(tmp_path, model, *parts, before=0, steps=1000):
+    """Return the readings of a model's bumper in a world of these elements."""
+    file = tmp_path / 'it.world'
+    file.write_text(f'<sdf version="1.6"><world name="w">{"".join(parts)}</world></sdf>')
+    with World.from_file(file) as world:
+        world.run(before)
+        found = collected(world.models[model].plugin('bumper').outputs['contacts'])
+        world.run(steps)
+    return found
+
+
 @pytest.mark.parametrize(
     ('below', 'above', 'first'),
     [
@@ -140,17 +152,8 @@ def test_order_of_a_pair_follows_from_sizes_and_age(tmp_path, below, above, firs
         cubes.reverse()
         if first == 'upper' and below[1] // 1 == above[1] // 1:
             first = 'lower'
-    file = tmp_path / 'two.world'
-    file.write_text(
-        '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
-        f'</include>{"".join(cubes)}</world></sdf>'
-    )
-    with World.from_file(file) as world:
-        found = []
-        world.models['upper'].plugin('bumper').outputs['contacts'].connect(found.append)
-        world.run(1000)
+    touches = readings_in(tmp_path, 'upper', GROUND_PLANE, *cubes)[-1]
     second = {'upper': 'lower', 'lower': 'upper'}[first]
-    touches = found[-1]
     assert {(touch.first, touch.second) for touch in touches} == {
         (f'{first}::link::c', f'{second}::link::c')
     }
@@ -159,35 +162,19 @@ def test_order_of_a_pair_follows_from_sizes_and_age(tmp_path, below, above, firs
 
 
 def test_static_body_is_the_first_of_a_pair_of_equal_size(tmp_path):
-    file = tmp_path / 'on_static.world'
-    file.write_text(
-        '<sdf version="1.6"><world name="w">'
-        f'{cube("upper", 0.8, 1.3)}{cube("lower", 0.9, 0.45, static=True)}'
-        '</world></sdf>'
-    )
-    with World.from_file(file) as world:
-        found = []
-        world.models['upper'].plugin('bumper').outputs['contacts'].connect(found.append)
-        world.run(1000)
-    assert {(touch.first, touch.second) for touch in found[-1]} == {
+    cubes = cube('upper', 0.8, 1.3), cube('lower', 0.9, 0.45, static=True)
+    touches = readings_in(tmp_path, 'upper', *cubes)[-1]
+    assert {(touch.first, touch.second) for touch in touches} == {
         ('lower::link::c', 'upper::link::c')
     }
-    assert total([found[-1][-1]])[2] == pytest.approx(-98.0, abs=0.1)
+    assert total([touches[-1]])[2] == pytest.approx(-98.0, abs=0.1)
 
 
 def test_ground_is_the_second_of_a_pair_though_it_is_newer(tmp_path):
     """The promise of upstream's test_bumper: the box of a world bears its weight, upwards."""
-    file = tmp_path / 'box_first.world'
-    file.write_text(
-        '<sdf version="1.6"><world name="w"><gravity>0 0 -9.81</gravity>'
-        f'{cube("box", 1.0, 0.5)}<include><uri>model://ground_plane</uri></include>'
-        '</world></sdf>'
-    )
-    with World.from_file(file) as world:
-        world.run(100)  # Bullet's contacts bear no load before they are 10 µm deep
-        found = []
-        world.models['box'].plugin('bumper').outputs['contacts'].connect(found.append)
-        world.run(11_000)
+    parts = '<gravity>0 0 -9.81</gravity>', cube('box', 1.0, 0.5), GROUND_PLANE
+    # Bullet's contacts bear no load before they are 10 µm deep.
+    found = readings_in(tmp_path, 'box', *parts, before=100, steps=11_000)
     messages = [contacts_message(reading) for reading in found]
     assert {message.states[0].collision1_name for message in messages} == {'box::link::c'}
     forces = [message.states[0].total_wrench.force.z for message in messages]

@@ -10,7 +10,7 @@ from PIL import Image
 from sensor_msgs.msg import RegionOfInterest
 from support.cameras import EDGES, LEVELS, camera_sdf, plugin_of
 from support.pictures import recorded_picture, recorded_world, spawn_robot
-from support.sensing import RECORDED, recordings, robot_text
+from support.sensing import RECORDED, collected, recordings, robot_text
 
 from rosbots_description.ros_api.adapters.cameras import image_message, info_message
 from rosbots_description.sim.public.world import World
@@ -40,14 +40,17 @@ INFOS = recordings('camera_info')
 FACES = recordings('materials')
 
 
+def share_off(pixels, name):
+    """Return the share of pixels that differ from those of a recorded picture."""
+    return (np.abs(pixels.astype(int) - recorded_picture(name)).max(axis=2) > LEVELS).mean()
+
+
 @pytest.mark.parametrize('name', SCENES)
 def test_image_agrees_with_the_recording(name):
     world_name, robot, x, yaw = SCENES[name]
     with recorded_world(world_name) as world:
         _, camera = spawn_robot(world, robot, x, yaw)
-        seen = camera.read().pixels.astype(int)
-    away = np.abs(seen - recorded_picture(name)).max(axis=2)
-    assert (away > LEVELS).mean() < EDGES
+        assert share_off(camera.read().pixels, name) < EDGES
 
 
 @pytest.mark.parametrize('behind', [False, True])
@@ -96,15 +99,13 @@ def test_colours_of_materials_agree_with_the_recording(name, turned, behind, tmp
 def test_cameras_of_a_multicamera_have_their_own_poses(scene):
     _, camera = spawn_robot(scene, 'multicamera')
     for side, picture in zip(('left', 'right'), camera.read(), strict=True):
-        away = np.abs(picture.pixels.astype(int) - recorded_picture(f'multicamera_{side}'))
-        assert (away.max(axis=2) > LEVELS).mean() < 10 * EDGES
+        assert share_off(picture.pixels, f'multicamera_{side}') < 10 * EDGES
 
 
 def test_16_bit_image_matches_the_8_bit_one_and_the_recorded_mean(scene):
     text = robot_text('camera_320', '>R8G8B8<', '>L16<')
     camera = next(iter(scene.spawn(text).sensors.values()))
-    images = []
-    plugin_of(camera).outputs['image'].connect(images.append)
+    images = collected(plugin_of(camera).outputs['image'])
     plugin_of(camera).process(camera.read())
     image = image_message(images[0])
     assert (image.encoding, image.step, image.is_bigendian) == ('mono16', 640, 0)
@@ -120,9 +121,7 @@ def test_16_bit_image_matches_the_8_bit_one_and_the_recorded_mean(scene):
 def test_distorted_image_agrees_with_the_recording_except_at_edges(scene, robot, share):
     """Gazebo's map of the distortion has gaps, which it fills with the mean of what is around."""
     _, camera = spawn_robot(scene, robot)
-    seen = camera.read().pixels.astype(int)
-    away = np.abs(seen - recorded_picture(robot)).max(axis=2)
-    assert (away > LEVELS).mean() < share
+    assert share_off(camera.read().pixels, robot) < share
 
 
 def test_noise_has_the_given_deviation_and_is_repeatable(scene):
@@ -141,8 +140,8 @@ def test_noise_has_the_given_deviation_and_is_repeatable(scene):
 def test_camera_info_agrees_with_the_recording(scene, name):
     recorded = INFOS[name]
     _, camera = spawn_robot(scene, recorded['robot'])
-    plugin, infos = plugin_of(camera), []
-    plugin.outputs[recorded['output']].connect(infos.append)
+    plugin = plugin_of(camera)
+    infos = collected(plugin.outputs[recorded['output']])
     plugin.process(camera.read())
     message, expected = info_message(infos[0]), recorded['message']
     for field in ('width', 'height', 'distortion_model'):
@@ -165,9 +164,8 @@ def test_camera_info_agrees_with_the_recording(scene, name):
 )
 def test_compressed_image_is_a_jpeg_file_of_the_image(scene, robot, mode, form):
     _, camera = spawn_robot(scene, robot)
-    compressed, whole = [], []
-    plugin_of(camera).channels[0].compressed.connect(compressed.append)
-    camera.readings.connect(whole.append)
+    compressed = collected(plugin_of(camera).channels[0].compressed)
+    whole = collected(camera.readings)
     scene.run(seconds=0.07)
     camera.readings.disconnect(whole.append)
     scene.run(seconds=0.07)
@@ -217,9 +215,7 @@ def test_the_bytes_of_bgr8_are_in_its_order(scene, robot):
     """The recorded picture of each, decoded as bgr8, is that of the camera in rgb8."""
     model = scene.spawn(robot_text('camera_BGR8', 'BGR8', robot.removeprefix('camera_')))
     camera = next(iter(model.sensors.values()))
-    seen = camera.read().pixels[:, :, ::-1].astype(int)
-    away = np.abs(seen - recorded_picture('camera_320')).max(axis=2)
-    assert (away > LEVELS).mean() < EDGES
+    assert share_off(camera.read().pixels[:, :, ::-1], 'camera_320') < EDGES
     assert camera.cameras[0].encoding == 'bgr8'
 
 

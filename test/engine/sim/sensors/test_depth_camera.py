@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.cameras import EDGES, plugin_of
 from support.pictures import FILES, spawn_robot
-from support.sensing import recordings, robot_text
+from support.sensing import collected, recordings, robot_text
 
 from rosbots_description.ros_api.adapters.cameras import cloud_message, image_message
 
@@ -15,9 +15,8 @@ DEPTH = 1e-4  # [m]
 
 def depths_of(camera, dtype='<f4'):
     """Return the depth image, with the sizes and encoding of its message, and the cloud."""
-    plugin, images, clouds = plugin_of(camera), [], []
-    plugin.depth.connect(images.append)
-    plugin.points.connect(clouds.append)
+    plugin = plugin_of(camera)
+    images, clouds = collected(plugin.depth), collected(plugin.points)
     plugin.process(camera.read())
     (image,), (cloud,) = map(image_message, images), map(cloud_message, clouds)
     kind = image.encoding, image.step, cloud.height, cloud.width, cloud.is_dense

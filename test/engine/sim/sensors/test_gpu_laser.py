@@ -4,7 +4,7 @@ import logging
 
 import numpy as np
 import pytest
-from support.sensing import numbers, recordings, robot_text
+from support.sensing import collected, numbers, recordings, robot_text
 
 NOISE = '<noise><type>gaussian</type><mean>0</mean><stddev>0.05</stddev></noise></ray>'
 
@@ -29,9 +29,8 @@ def test_scan_agrees_with_the_recording_of_a_ray_sensor(scene, robot):
 def test_noise_is_limited_to_the_range_and_no_return_has_none(scene):
     """As recorded of a ray with a deviation of 0.05 m up to 3.5 m."""
     model = spawn_gpu(scene, 'laser_short', '</ray>', NOISE)
-    clean = next(iter(model.sensors.values())).cast()[0]
-    scans = []
-    next(iter(model.sensors.values())).readings.connect(scans.append)
+    (sensor,) = model.sensors.values()
+    clean, scans = sensor.cast()[0], collected(sensor.readings)
     scene.run(2000)
     ranges, met = np.array([scan.ranges for scan in scans]), clean < 3.5
     assert np.isposinf(ranges[:, ~met]).all()

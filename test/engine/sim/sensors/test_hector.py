@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.sensing import collected, timed
 
 from rosbots_description.ros_api.adapters.imus import fix_message
 from rosbots_description.sim.core.errors import NotFoundError
@@ -31,9 +32,7 @@ def spawn(world, library, output, tags='', **pose):
     """Return model, plugin, and a list to which an output appends its readings."""
     model = world.spawn(ROBOT.format(library=library, tags=tags), 'r', **pose)
     plugin = model.plugin('p')
-    found = []
-    plugin.outputs[output].connect(found.append)
-    return model, plugin, found
+    return model, plugin, collected(plugin.outputs[output])
 
 
 def test_fix_is_on_the_ellipsoid_with_x_north_and_y_west(world):
@@ -53,8 +52,7 @@ def test_heading_rotates_position_and_velocity(world):
         '<referenceHeading>90</referenceHeading><referenceAltitude>7</referenceAltitude>'
     )
     model, plugin, found = spawn(world, 'gps', 'fix', tags, y=100.0)
-    velocities = []
-    plugin.outputs['velocity'].connect(velocities.append)
+    velocities = collected(plugin.outputs['velocity'])
     model.set_twist(Twist((0.0, 2.0, 0.5), (0.0, 0.0, 0.0)))
     plugin.report()
     assert found[0][:3] == pytest.approx((100.0 / 110574.3, 0.0, 7.0), abs=1e-7)
@@ -62,12 +60,11 @@ def test_heading_rotates_position_and_velocity(world):
 
 
 def test_fix_has_a_rate_of_4_hz_on_a_reduced_link_too(world):
-    times = []
-    _, plugin, found = spawn(world, 'gps', 'fix', '<bodyName>mast</bodyName>')
-    plugin.outputs['fix'].connect(lambda _: times.append(world.clock.now_ns // 1_000_000))
+    _, plugin, _ = spawn(world, 'gps', 'fix', '<bodyName>mast</bodyName>')
+    found = timed(world, plugin.outputs['fix'])
     world.run(750)
-    assert times == [250, 500, 750]
-    assert found[0].altitude == pytest.approx(2.0 - GRAVITY * 0.25**2 / 2, abs=0.01)
+    assert [time for time, _ in found] == [250, 500, 750]
+    assert found[0][1].altitude == pytest.approx(2.0 - GRAVITY * 0.25**2 / 2, abs=0.01)
 
 
 def test_message_has_its_covariance(world):
@@ -139,8 +136,7 @@ def test_imu_at_rest_measures_gravity_and_its_errors_tilt_the_orientation(world)
         '</accelGaussianNoise><yawGaussianNoise>.1</yawGaussianNoise>'
     )
     _, plugin, found = spawn(world, 'imu', 'imu', tags)
-    biases = []
-    plugin.outputs['bias'].connect(biases.append)
+    biases = collected(plugin.outputs['bias'])
     plugin.report()
     reading, bias = found[-1], biases[-1]
     assert reading.angular_velocity == pytest.approx((0.0, 0.0, 1.0))
@@ -173,8 +169,7 @@ def test_readings_repeat_with_the_seed_at_any_start_of_reading():
             tags = '<accelDrift>.3</accelDrift><rateGaussianNoise>.1</rateGaussianNoise>'
             model = world.spawn(ROBOT.format(library='imu', tags=tags), 'r')
             world.run(begin)
-            found = []
-            model.plugin('p').outputs['imu'].connect(found.append)
+            found = collected(model.plugin('p').outputs['imu'])
             world.run(20 - begin)
             return found[-1]
 

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support.sensing import box_sdf, robot_text, timed
+from support.sensing import box_sdf, collected, robot_text, timed
 
 from rosbots_description.ros_api.adapters.wrenches import wrench_message
 from rosbots_description.sim.public.world import World
@@ -85,9 +85,8 @@ ROD = """<robot name="rod"><link name="world"/><joint name="f" type="fixed"><par
 
 @pytest.mark.parametrize('lower', [-1, 0])  # 0: as of a fixed joint that is kept for its sensor
 def test_reaction_at_a_joint_limit_is_the_weight_of_rod_and_load(world, lower):
-    found = []
     (plugin,) = world.spawn(ROD.format(lower=lower)).plugins.values()
-    plugin.outputs['wrench'].connect(found.append)
+    found = collected(plugin.outputs['wrench'])
     world.run(200)
     assert (*found[-1].force, *found[-1].torque) == pytest.approx(
         (0.0, 0.0, -19.6, 0.0, 9.8, 0.0), abs=0.01
@@ -103,8 +102,7 @@ def test_frame_is_that_of_the_child_and_nothing_is_measured_without_readers(worl
     model = world.spawn(ARM, 'arm')
     plugin = model.plugin('ft')
     assert plugin.params.values['frame'] == 'fore'
-    read = []
-    plugin.outputs['wrench'].connect(read.append)
+    read = collected(plugin.outputs['wrench'])
     world.run(20)
     plugin.outputs['wrench'].disconnect(read.append)
     assert len(read) == 2

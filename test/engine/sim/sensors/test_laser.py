@@ -11,6 +11,7 @@ from support.sensing import (
     CUBE,
     ROBOTS,
     box_sdf,
+    collected,
     numbers,
     recorded_scene,
     recordings,
@@ -247,8 +248,7 @@ def test_rate_of_a_sensor_does_not_depend_on_others_or_readers(scene):
 
 def test_no_scan_is_computed_without_readers(scene):
     sensor = scene.spawn(ROBOT).sensor('head_hokuyo_sensor')
-    read = []
-    sensor.readings.connect(read.append)
+    read = collected(sensor.readings)
     sensor.readings.disconnect(read.append)
     sensor.measure = pytest.fail
     scene.run(100)
@@ -312,8 +312,7 @@ def test_plugin_outputs_scans_only_with_readers(scene):
     plugin = robot.plugin('laser')
     assert plugin.params.values == {'frameName': 'laser_link', 'topicName': '/scan'}
     assert not plugin.sensor.readings.wanted
-    read = []
-    plugin.outputs['scan'].connect(read.append)
+    read = collected(plugin.outputs['scan'])
     scene.run(50)
     plugin.outputs['scan'].disconnect(read.append)
     assert len(read) == 2

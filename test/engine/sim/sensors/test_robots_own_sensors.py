@@ -5,6 +5,7 @@ from contextlib import ExitStack
 import numpy as np
 import pytest
 from support import robot_urdf
+from support.sensing import collected
 
 from rosbots_description.sim.physics.bullet import contacts
 from rosbots_description.sim.public.world import World
@@ -31,9 +32,7 @@ def spawn():
 
 
 def readings(robot, plugin, output):
-    found = []
-    robot.plugin(plugin).outputs[output].connect(found.append)
-    return found
+    return collected(robot.plugin(plugin).outputs[output])
 
 
 def test_it_drives_as_without_sensors(spawn):

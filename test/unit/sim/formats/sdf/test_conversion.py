@@ -1,5 +1,7 @@
 """SDF 1.0 to 1.2, with values in attributes, is the same as its current form."""
 
+from dataclasses import replace
+
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.core.transforms import from_rpy
 from rosbots_description.sim.description import Plane
@@ -119,17 +121,7 @@ def test_values_in_attributes_are_those_in_elements():
     (other, other_pose), _ = new.models
     assert pose == other_pose == Pose((0.0, 0.0, 2.1), from_rpy(0.5, 0.0, 0.0))
     (link,), (other_link,) = arm.links, other.links
-    for field in (
-        'pose',
-        'inertial',
-        'collisions',
-        'visuals',
-        'gravity',
-        'self_collide',
-        'linear_damping',
-        'angular_damping',
-    ):
-        assert getattr(link, field) == getattr(other_link, field), field
+    assert replace(link, sensors=()) == replace(other_link, sensors=())
     assert arm.joints == other.joints
     for sensor, like in zip(link.sensors, other_link.sensors, strict=True):
         assert content(sensor.element) == content(like.element)

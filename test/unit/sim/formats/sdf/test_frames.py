@@ -66,13 +66,9 @@ def test_collision_posed_in_another_frame_is_transformed_into_its_link():
 
 
 def test_sensor_posed_in_another_frame_is_transformed_into_its_link():
-    sensor = (
-        load("""<link name="a"><pose>1 0 0 0 0 0</pose><sensor name="s" type="ray">
-      <pose relative_to="__model__">1 0 2 0 0 0</pose><always_on>1</always_on></sensor></link>
-      """)
-        .links[0]
-        .sensors[0]
-    )
+    spec = load("""<link name="a"><pose>1 0 0 0 0 0</pose><sensor name="s" type="ray">
+      <pose relative_to="__model__">1 0 2 0 0 0</pose><always_on>1</always_on></sensor></link>""")
+    (sensor,) = spec.links[0].sensors
     assert sensor.pose == Pose((0.0, 0.0, 2.0))
     assert sensor.always_on
 

@@ -50,27 +50,23 @@ def test_a_continuous_joint_is_a_revolute_one_without_limits():
     assert (made.type, made.lower, made.upper) == (REVOLUTE, None, None)
 
 
-def test_an_axis_is_given_in_the_joints_frame():
-    assert only().axis == (1.0, 0.0, 0.0)
-
-
-def test_an_axis_may_be_given_in_the_models_frame():
-    inside = '<axis><xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame></axis>'
-    assert only(inside=inside).axis == pytest.approx((0.0, -1.0, 0.0))
-
-
-def test_before_sdf_1_5_every_axis_is_given_in_the_models_frame():
-    assert only(version='1.4').axis == pytest.approx((0.0, -1.0, 0.0))
-
-
-def test_since_sdf_1_7_an_axis_names_its_frame():
-    inside = '<axis><xyz expressed_in="{}">1 0 0</xyz></axis>'
-    assert only(version='1.7', inside=inside.format('__model__')).axis == pytest.approx((0, -1, 0))
-    assert only(version='1.7', inside=inside.format('b')).axis == pytest.approx((1, 0, 0))
-
-
-def test_axis_is_normalised():
-    assert only(inside='<axis><xyz>0 3 4</xyz></axis>').axis == pytest.approx((0.0, 0.6, 0.8))
+@pytest.mark.parametrize(
+    ('version', 'inside', 'axis'),
+    [
+        ('1.4', '<xyz>1 0 0</xyz>', (0.0, -1.0, 0.0)),  # all axes in the model's frame
+        ('1.6', '<xyz>1 0 0</xyz>', (1.0, 0.0, 0.0)),
+        (
+            '1.6',
+            '<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>',
+            (0.0, -1.0, 0.0),
+        ),
+        ('1.7', '<xyz expressed_in="__model__">1 0 0</xyz>', (0.0, -1.0, 0.0)),
+        ('1.7', '<xyz expressed_in="b">1 0 0</xyz>', (1.0, 0.0, 0.0)),
+        ('1.6', '<xyz>0 3 4</xyz>', (0.0, 0.6, 0.8)),  # of unit length
+    ],
+)
+def test_an_axis_is_given_in_the_frame_of_its_version(version, inside, axis):
+    assert only(version=version, inside=f'<axis>{inside}</axis>').axis == pytest.approx(axis)
 
 
 def test_the_joints_pose_is_given_in_the_childs_frame():
@@ -146,15 +142,8 @@ def test_second_joint_to_the_world_closes_a_loop(caplog):
 
 
 def test_one_joint_of_a_link_with_two_parents_is_reversed():
-    spec = load(
-        joint('a', 'b')
-        + joint(
-            'c',
-            'b',
-            inside="""<pose>0 0 1 0 0 0</pose>
-      <axis><xyz>1 0 0</xyz></axis>""",
-        )
-    )
+    inside = '<pose>0 0 1 0 0 0</pose><axis><xyz>1 0 0</xyz></axis>'
+    spec = load(joint('a', 'b') + joint('c', 'b', inside=inside))
     turned = spec.joints[1]
     assert [(made.parent, made.child) for made in spec.joints] == [('a', 'b'), ('b', 'c')]
     # The joint stays where it was, and its position keeps its sign.

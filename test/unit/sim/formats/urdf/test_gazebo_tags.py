@@ -26,6 +26,11 @@ def load(blocks, **options):
     return load_urdf(f'<robot name="r">{ROBOT}\n{blocks}</robot>', 'bot', source='s', **options)[0]
 
 
+def tagged(inside, **options):
+    """Return link c, which has a block."""
+    return load(f'<gazebo reference="c">{inside}</gazebo>', **options).link('c')
+
+
 def plugin(inside):
     return f'<gazebo><plugin name="p" filename="libp.so">{inside}</plugin></gazebo>'
 
@@ -61,17 +66,17 @@ def test_a_surface_is_read_from_text_or_attribute(form):
     }
     tags = ''.join(form.format(tag, value) for tag, value in values.items())
     tags += form.format('fdir1', '1 0 0')
-    surface = load(f'<gazebo reference="c">{tags}</gazebo>').link('c').collisions[0].surface
+    surface = tagged(tags).collisions[0].surface
     assert surface == Surface(0.5, 0.6, (1.0, 0.0, 0.0), 1e6, 100.0, 1.0, 0.001, 5, 2.0)
 
 
 def test_surface_in_the_structure_of_sdf_is_read():
-    block = (
-        '<gazebo reference="c"><collision><surface><friction><ode><mu>0.1</mu><mu2>0.2</mu2>'
-        '</ode></friction><contact><ode><kp>5</kp></ode></contact></surface>'
-        '<max_contacts>3</max_contacts></collision></gazebo>'
+    surface = (
+        '<friction><ode><mu>0.1</mu><mu2>0.2</mu2></ode></friction>'
+        '<contact><ode><kp>5</kp></ode></contact>'
     )
-    surface = load(block).link('c').collisions[0].surface
+    collision = f'<surface>{surface}</surface><max_contacts>3</max_contacts>'
+    surface = tagged(f'<collision>{collision}</collision>').collisions[0].surface
     assert (surface.mu, surface.mu2, surface.kp, surface.max_contacts) == (0.1, 0.2, 5.0, 3)
 
 
@@ -84,8 +89,7 @@ def test_surface_and_material_of_a_reduced_link_apply_to_its_own_shapes_only():
 
 @pytest.mark.parametrize('written', ['-1', 'inf', 'Infinity', '+INF'])
 def test_negative_or_infinite_friction_is_unlimited(written):
-    spec = load(f'<gazebo reference="c"><mu1>{written}</mu1></gazebo>')
-    assert spec.link('c').collisions[0].surface.mu == ENDLESS_FRICTION
+    assert tagged(f'<mu1>{written}</mu1>').collisions[0].surface.mu == ENDLESS_FRICTION
 
 
 @pytest.mark.parametrize(
@@ -100,15 +104,11 @@ def test_negative_or_infinite_friction_is_unlimited(written):
     ],
 )
 def test_turn_gravity_off_reads_booleans_as_gazebo(text, gravity):
-    block = f'<gazebo reference="c"><turnGravityOff>{text}</turnGravityOff></gazebo>'
-    assert load(block).link('c').gravity is gravity
+    assert tagged(f'<turnGravityOff>{text}</turnGravityOff>').gravity is gravity
 
 
 def test_self_collision_and_damping_are_read():
-    link = load(
-        '<gazebo reference="c"><selfCollide>Yes</selfCollide>'
-        '<dampingFactor>0.3</dampingFactor></gazebo>'
-    ).link('c')
+    link = tagged('<selfCollide>Yes</selfCollide><dampingFactor>0.3</dampingFactor>')
     assert (link.self_collide, link.linear_damping, link.angular_damping) == (True, 0.3, 0.3)
 
 
@@ -120,17 +120,14 @@ def test_flag_of_a_reduced_link_applies_to_its_parent_with_a_warning(caplog):
 
 
 def test_an_unknown_material_is_grey_with_a_warning(caplog):
-    spec = load('<gazebo reference="c"><material>Gazebo/Puce</material></gazebo>')
-    assert spec.link('c').visuals[0].material == Material(script='Gazebo/Puce')
+    (visual,) = tagged('<material>Gazebo/Puce</material>').visuals
+    assert visual.material == Material(script='Gazebo/Puce')
     assert "<gazebo reference='c'>: material 'Gazebo/Puce' is neither" in caplog.text
 
 
 def test_visual_block_sets_the_colour():
-    spec = load(
-        '<gazebo reference="c"><visual><material><ambient>0 0 0 1</ambient>'
-        '<diffuse>0.1 0.2 0.3 1</diffuse></material></visual></gazebo>'
-    )
-    material = spec.link('c').visuals[0].material
+    colours = '<ambient>0 0 0 1</ambient><diffuse>0.1 0.2 0.3 1</diffuse>'
+    material = tagged(f'<visual><material>{colours}</material></visual>').visuals[0].material
     assert material.rgba == (0.1, 0.2, 0.3, 1.0)
     assert material.reflection.ambient == (0.0, 0.0, 0.0)
     assert material.reflection.diffuse == (0.1, 0.2, 0.3)
@@ -168,12 +165,10 @@ def test_namespace_is_given_to_plugins_without_one(inside, expected):
 
 
 def test_namespace_is_given_to_plugins_in_sensors_unless_empty():
-    block = (
-        '<gazebo reference="c"><sensor name="s"><plugin name="p" filename="l"/></sensor></gazebo>'
-    )
-    (sensor,) = load(block, robot_namespace='/bot').link('c').sensors
+    block = '<sensor name="s"><plugin name="p" filename="l"/></sensor>'
+    (sensor,) = tagged(block, robot_namespace='/bot').sensors
     assert sensor.plugins[0].element.child('robotNamespace').text == '/bot'
-    (sensor,) = load(block).link('c').sensors
+    (sensor,) = tagged(block).sensors
     assert sensor.plugins[0].element.children == ()
 
 
@@ -183,10 +178,7 @@ def test_namespace_with_control_characters_is_an_error():
 
 
 def test_sensors_lights_and_projectors_are_kept_in_their_link():
-    block = (
-        '<gazebo reference="c"><sensor name="s"/><light name="l"/><projector name="p"/></gazebo>'
-    )
-    link = load(block).link('c')
+    link = tagged('<sensor name="s"/><light name="l"/><projector name="p"/>')
     assert [sensor.name for sensor in link.sensors] == ['s']
     assert [part.tag for part in link.parts] == ['light', 'projector']
 
@@ -246,12 +238,11 @@ def test_block_with_an_unknown_reference_is_reported_with_a_suggestion(caplog):
 )
 def test_malformed_number_in_a_block_is_an_error(tag, text):
     with pytest.raises(ModelError, match=rf"^s, line 2: <gazebo reference='c'>: <{tag}> is "):
-        load(f'<gazebo reference="c"><{tag}>{text}</{tag}></gazebo>')
+        tagged(f'<{tag}>{text}</{tag}>')
 
 
 def test_empty_numbers_in_a_block_are_ignored_with_a_warning(caplog):
-    spec = load('<gazebo reference="c"><mu1></mu1><kp/><mu2>0.25</mu2></gazebo>')
-    surface = spec.link('c').collisions[0].surface
+    surface = tagged('<mu1></mu1><kp/><mu2>0.25</mu2>').collisions[0].surface
     assert (surface.mu, surface.mu2) == (1.0, 0.25)
     assert '<mu1> is empty and ignored; give it a number' in caplog.text
 

@@ -107,45 +107,31 @@ def test_unreadable_mesh_is_left_out(tmp_path, caplog, filename, reason):
 
 
 @pytest.mark.parametrize(
-    'geometry',
+    ('read', 'geometry'),
     [
-        '<box size="0 0 0"/>',
-        '<box size="1 0 1"/>',
-        '<sphere radius="0"/>',
-        '<sphere radius="0.0"/>',
-        '<cylinder radius="0" length="1"/>',
-        '<cylinder radius="1" length="0"/>',
-        '<mesh filename="/nowhere/m.dae" scale="1 0 0"/>',
+        (urdf, '<box size="0 0 0"/>'),
+        (urdf, '<box size="1 0 1"/>'),
+        (urdf, '<sphere radius="0"/>'),
+        (urdf, '<sphere radius="0.0"/>'),
+        (urdf, '<cylinder radius="0" length="1"/>'),
+        (urdf, '<cylinder radius="1" length="0"/>'),
+        (urdf, '<mesh filename="/nowhere/m.dae" scale="1 0 0"/>'),
+        (sdf, '<box><size>0 0 0</size></box>'),
+        (sdf, '<sphere><radius>0</radius></sphere>'),
+        (sdf, '<cylinder><radius>1</radius><length>0</length></cylinder>'),
+        (sdf, '<mesh><uri>/nowhere/m.dae</uri><scale>1 0 0</scale></mesh>'),
     ],
 )
 @pytest.mark.parametrize('kind', ['collision', 'visual'])
-def test_a_shape_of_a_urdf_without_size_is_left_out(kind, geometry, caplog):
-    spec = urdf(shape(kind, geometry))
+def test_a_shape_without_size_is_left_out(read, kind, geometry, caplog):
+    spec = read(shape(kind, geometry))
     assert (spec.links[0].collisions, spec.links[0].visuals) == ((), ())
     assert spec.left_out == (f"{kind} of link 'a'",)
     ((level, sentence),) = logged(caplog)
     assert level == 'WARNING'
-    assert sentence.startswith("model 'bot' (bot.urdf): line 2: link 'a': ")
+    source = {urdf: "model 'bot' (bot.urdf): line 2", sdf: 'b.sdf, line 2'}[read]
+    assert sentence.startswith(f"{source}: link 'a': ")
     assert sentence.endswith(f'reduces it to nothing; the {kind} is left out')
-
-
-@pytest.mark.parametrize(
-    'geometry',
-    [
-        '<box><size>0 0 0</size></box>',
-        '<sphere><radius>0</radius></sphere>',
-        '<cylinder><radius>1</radius><length>0</length></cylinder>',
-        '<mesh><uri>/nowhere/m.dae</uri><scale>1 0 0</scale></mesh>',
-    ],
-)
-@pytest.mark.parametrize('kind', ['collision', 'visual'])
-def test_a_shape_of_an_sdf_without_size_is_left_out(kind, geometry, caplog):
-    spec = sdf(shape(kind, geometry))
-    assert (spec.links[0].collisions, spec.links[0].visuals) == ((), ())
-    assert spec.left_out == (f"{kind} of link 'a'",)
-    ((level, sentence),) = logged(caplog)
-    assert level == 'WARNING'
-    assert sentence.startswith("b.sdf, line 2: link 'a': ")
 
 
 def test_model_is_read_without_a_missing_include_and_its_joint(caplog):
