@@ -33,3 +33,11 @@ def sampled(rows, time, column):
     (t0, *before), (t1, *after) = rows[i - 1], rows[i]
     share = (time - t0) / (t1 - t0)
     return before[column] + share * (after[column] - before[column])
+
+
+def start_controller(model, name, kind, parameters):
+    """Load and start a controller of a type; return it."""
+    manager = model.plugin('gazebo_ros_control').manager
+    manager.load(name, kind, parameters)
+    manager.switch([name])
+    return model.controller(name)

@@ -4,8 +4,9 @@ import math
 
 import pytest
 from support.cars import BASE, RADIUS, car
+from support.controllers import start_controller
 
-from rosbots_description.sim import World, yaw_of
+from rosbots_description.sim import yaw_of
 from rosbots_description.sim.controllers import ControllerError
 
 TYPES = [
@@ -22,20 +23,12 @@ PARAMETERS = {
 FORWARD, ANGLE = 0.3, 0.2
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
 def spawned(world, kind=TYPES[0], parameters=PARAMETERS):
     """Return a car at rest and its running controller."""
     bot = world.spawn(car(steered=('front_left',), driven=('rear_left',)), name='car', z=RADIUS)
-    manager = bot.plugin('gazebo_ros_control').manager
-    manager.load('drive', kind, parameters)
-    manager.switch(['drive'])
+    drive = start_controller(bot, 'drive', kind, parameters)
     world.run(300)
-    return bot, bot.controller('drive')
+    return bot, drive
 
 
 @pytest.mark.parametrize('kind', TYPES)

@@ -4,7 +4,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from support.controllers import RECORDED
+from support.controllers import RECORDED, start_controller
 from support.recorded import DATA
 
 from rosbots_description.sim import World, yaw_of
@@ -28,20 +28,12 @@ RAMP = {'linear': {'x': {'has_acceleration_limits': True, 'max_acceleration': 1.
 FORWARD, YAW_RATE = 0.2, 0.5
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
-def spawned(world, parameters=PARAMETERS, text=TEXT):
+def spawned(world, parameters=PARAMETERS):
     """Return the robot at rest, and its controller, which runs."""
-    robot = world.spawn(text, name='bot')
-    manager = robot.plugin('gazebo_ros_control').manager
-    manager.load('drive', TYPE, parameters)
-    manager.switch(['drive'])
+    robot = world.spawn(TEXT, name='bot')
+    drive = start_controller(robot, 'drive', TYPE, parameters)
     world.run(500)
-    return robot, robot.controller('drive')
+    return robot, drive
 
 
 def test_a_robot_moves_alike_with_the_controller_and_with_the_plugin(world):
@@ -165,10 +157,8 @@ def test_a_command_is_limited_and_reported(world):
     ],
 )
 def test_bad_parameters_get_a_clear_answer(change, text, world):
-    robot = world.spawn(TEXT, name='bot')
-    manager = robot.plugin('gazebo_ros_control').manager
     with pytest.raises(ControllerError) as error:
-        manager.load('drive', TYPE, PARAMETERS | change)
+        spawned(world, PARAMETERS | change)
     assert text in error.value.sentences
 
 

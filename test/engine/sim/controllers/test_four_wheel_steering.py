@@ -4,8 +4,9 @@ import math
 
 import pytest
 from support.cars import BASE, RADIUS, SIDES, TRACK, car
+from support.controllers import start_controller
 
-from rosbots_description.sim import World, yaw_of
+from rosbots_description.sim import yaw_of
 from rosbots_description.sim.controllers import ControllerError
 
 ALL = tuple(name for name, _, _ in SIDES)
@@ -22,20 +23,12 @@ PARAMETERS = {
 SPEED = 0.2
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
 def spawned(world, parameters=PARAMETERS):
     """Return a car at rest and its running controller."""
     bot = world.spawn(car(steered=ALL, driven=ALL), name='car', z=RADIUS)
-    manager = bot.plugin('gazebo_ros_control').manager
-    manager.load('drive', TYPE, parameters)
-    manager.switch(['drive'])
+    drive = start_controller(bot, 'drive', TYPE, parameters)
     world.run(300)
-    return bot, bot.controller('drive')
+    return bot, drive
 
 
 def test_sizes_are_read_from_the_description(world):

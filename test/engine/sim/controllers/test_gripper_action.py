@@ -5,17 +5,10 @@ import math
 import pytest
 from support.controllers import EFFORT, POSITION, spawn_arm
 
-from rosbots_description.sim import World
 from rosbots_description.sim.controllers import ControllerError
 
 GAINS = {'gains': {'joint2': {'p': 100.0, 'd': 5.0}}}
 PARAMETERS = {'joint': 'joint2', 'max_effort': 40.0, 'stall_timeout': 0.2}
-
-
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
 
 
 def started(world, interface=EFFORT, parameters=PARAMETERS):

@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from support.controllers import EFFORT, POSITION, VELOCITY, arm, spawn_arm
+from support.controllers import EFFORT, POSITION, VELOCITY, arm, spawn_arm, start_controller
 
-from rosbots_description.sim import PluginError, World
+from rosbots_description.sim import PluginError
 from rosbots_description.sim.controllers import ControllerError
 from rosbots_description.sim.core import IDENTITY
 from rosbots_description.sim.formats import load_robot_control, load_urdf, sdf_of_model
@@ -19,18 +19,10 @@ TYPES = {
 }
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
 def started(world, interface, command, **more):
     """Return the arm under a command."""
-    model, manager = spawn_arm(world, interface, **more)
-    manager.load('arm', TYPES[interface], BOTH)
-    manager.switch(['arm'])
-    model.controller('arm').command(command)
+    model, _ = spawn_arm(world, interface, **more)
+    start_controller(model, 'arm', TYPES[interface], BOTH).command(command)
     return model
 
 
@@ -75,11 +67,10 @@ def test_another_period_is_logged(period, text, world, caplog):
 
 
 def test_controllers_run_once_per_period(world):
-    model, manager = spawn_arm(world, change=plugin_tags('<controlPeriod>0.01</controlPeriod>'))
-    manager.load('arm', TYPES[EFFORT], BOTH)
-    manager.switch(['arm'])
+    model, _ = spawn_arm(world, change=plugin_tags('<controlPeriod>0.01</controlPeriod>'))
     periods = []
-    model.controller('arm').update = lambda now_ns, period: periods.append(period)
+    controller = start_controller(model, 'arm', TYPES[EFFORT], BOTH)
+    controller.update = lambda now_ns, period: periods.append(period)
     world.run(100)
     assert periods == pytest.approx([0.01] * 10)
 
@@ -283,8 +274,7 @@ def test_a_limp_robot_costs_no_steps(world):
     plugin = spawned(world, lambda text: text)
     world.run(2)
     assert plugin.due > world.clock.steps + 1000
-    plugin.manager.load('arm', TYPES[EFFORT], BOTH)
-    plugin.manager.switch(['arm'])
+    start_controller(plugin.model, 'arm', TYPES[EFFORT], BOTH)
     assert plugin.due == world.clock.steps + 1
 
 
@@ -300,11 +290,10 @@ def test_a_mimic_joint_follows_its_leader(world):
         ),
         name='arm',
     )
-    manager = model.plugin('gazebo_ros_control').manager
-    manager.load('arm', 'position_controllers/JointPositionController', {'joint': 'joint1'})
-    manager.switch(['arm'])
+    kind = 'position_controllers/JointPositionController'
+    controller = start_controller(model, 'arm', kind, {'joint': 'joint1'})
     for wanted in (0.6, -0.4):
-        model.controller('arm').command(wanted)
+        controller.command(wanted)
         world.run(300)
         assert model.joint('joint2').position == pytest.approx(-0.5 * wanted + 0.1, abs=STILL)
 
@@ -341,9 +330,7 @@ def test_absurd_limits_and_mimics_do_not_make_a_robot_diverge(absurd, world):
     model = world.spawn(arm(POSITION), name='arm')
     plugin = model.plugin('gazebo_ros_control')
     plugin.configure(control)
-    plugin.manager.load('arm', TYPES[POSITION], BOTH)
-    plugin.manager.switch(['arm'])
-    model.controller('arm').command([0.5, 0.5])
+    start_controller(model, 'arm', TYPES[POSITION], BOTH).command([0.5, 0.5])
     world.run(200)
     assert world.rebuilds == 0
     assert not model.has_diverged()

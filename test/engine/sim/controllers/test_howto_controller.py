@@ -7,7 +7,7 @@ import sys
 import pytest
 import yaml
 from support import ROOT
-from support.controllers import spawn_arm
+from support.controllers import spawn_arm, start_controller
 
 from rosbots_description.sim import World
 from rosbots_description.sim.controllers import ControllerError
@@ -20,12 +20,6 @@ TEXT = (ROOT / 'doc' / 'howto_add_a_controller.md').read_text(encoding='utf-8')
 WAVE, BASE = (yaml.safe_load(text) for text in re.findall(r'```yaml\n(.*?)```', TEXT, re.DOTALL))
 PLUGIN = re.compile(r'<gazebo>(?:(?!</gazebo>).)*libgazebo_ros_diff_drive.*?</gazebo>', re.DOTALL)
 MOST_LINES = 60
-
-
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
 
 
 @pytest.fixture
@@ -62,11 +56,9 @@ def test_the_controller_is_found_by_its_type_and_waves(own, package, world):
     (package / 'controllers.py').write_text(
         CODE.replace('rosbots_description', own), encoding='utf-8'
     )
-    model, manager = spawn_arm(world)
+    model, _ = spawn_arm(world)
     parameters = WAVE['wave'] | {'joint': 'joint1'}
-    manager.load('wave', parameters['type'], parameters)
-    manager.switch(['wave'])
-    wave, positions = model.controller('wave'), []
+    wave, positions = start_controller(model, 'wave', parameters['type'], parameters), []
     assert list(wave.pids) == ['pid']
     world.run(2000)
     for _ in range(1000):
@@ -121,10 +113,7 @@ def test_the_robot_of_the_demo_drives_alike_by_the_controller(world):
             robot = other.spawn(urdf, name='bot', z=0.5)
             other.run(1000)
             if urdf is changed:
-                manager = robot.plugin('control').manager
-                manager.load('base', BASE['base']['type'], BASE['base'])
-                manager.switch(['base'])
-                drive = robot.controller('base')
+                drive = start_controller(robot, 'base', BASE['base']['type'], BASE['base'])
             else:
                 drive = robot.plugin('diff_drive')
             for _ in range(40):

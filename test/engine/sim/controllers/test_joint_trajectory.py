@@ -3,9 +3,16 @@
 import math
 
 import pytest
-from support.controllers import EFFORT, POSITION, RECORDED, VELOCITY, sampled, spawn_arm
+from support.controllers import (
+    EFFORT,
+    POSITION,
+    RECORDED,
+    VELOCITY,
+    sampled,
+    spawn_arm,
+    start_controller,
+)
 
-from rosbots_description.sim import World
 from rosbots_description.sim.controllers import (
     ControllerError,
     Tolerance,
@@ -22,18 +29,11 @@ TYPES = {EFFORT: 'effort', POSITION: 'position', VELOCITY: 'velocity'}
 STATES = {3: 'succeeded', 4: 'aborted'}  # of actionlib
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
 def started(world, interface=POSITION, parameters=PARAMETERS, **more):
     """Return the arm and its running trajectory controller."""
-    model, manager = spawn_arm(world, interface, **more)
-    manager.load('arm', f'{TYPES[interface]}_controllers/JointTrajectoryController', parameters)
-    manager.switch(['arm'])
-    return model, model.controller('arm')
+    model, _ = spawn_arm(world, interface, **more)
+    kind = f'{TYPES[interface]}_controllers/JointTrajectoryController'
+    return model, start_controller(model, 'arm', kind, parameters)
 
 
 def goal(*points, names=NAMES, **more):

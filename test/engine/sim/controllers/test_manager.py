@@ -5,24 +5,20 @@ import math
 from itertools import pairwise
 
 import pytest
-from support.controllers import EFFORT, POSITION, VELOCITY, spawn_arm
+from support.controllers import EFFORT, POSITION, VELOCITY, spawn_arm, start_controller
 
 from rosbots_description.sim import NotFoundError, World
 from rosbots_description.sim.controllers import ControllerError, ControllerManager
 
 GROUP = 'position_controllers/JointGroupPositionController'
 ONE = 'position_controllers/JointPositionController'
+TRAJECTORY = 'position_controllers/JointTrajectoryController'
+EFFORTS = 'effort_controllers/JointGroupEffortController'
 BOTH = {'joints': ['joint1', 'joint2']}
 STATES = 'joint_state_controller/JointStateController'
 PID = 'effort_controllers/JointPositionController'
 GAINS = {'joint': 'joint1', 'pid': {'p': 100.0, 'i': 0.01, 'd': 10.0}}
 LATER = 300  # steps
-
-
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
 
 
 def refused(call, *arguments):
@@ -32,11 +28,15 @@ def refused(call, *arguments):
     return error.value.sentences
 
 
+def started(world, kind=GROUP):
+    """Return the arm, and a running controller of its two joints."""
+    model, _ = spawn_arm(world, POSITION)
+    return model, start_controller(model, 'arm', kind, BOTH)
+
+
 def test_a_group_follows_its_command(world):
-    model, manager = spawn_arm(world, POSITION)
-    manager.load('arm', GROUP, BOTH)
-    manager.switch(['arm'])
-    model.controller('arm').command([0.5, -0.3])
+    model, controller = started(world)
+    controller.command([0.5, -0.3])
     world.run(LATER)
     assert [joint.position for joint in model.joints.values()] == pytest.approx(
         [0.5, -0.3], abs=1e-3
@@ -59,22 +59,11 @@ def test_states_are_listed_as_upstream(world):
 
 
 def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
-    model, manager = spawn_arm(world)
-    manager.load(
-        'states',
-        STATES,
-        {
-            'publish_rate': 100,
-            'extra_joints': [
-                {'name': 'extra', 'position': 0.25},
-                {'name': 'joint1'},
-                {'position': 1.0},
-            ],
-        },
-    )
-    manager.switch(['states'])
+    model, _ = spawn_arm(world)
+    extra = [{'name': 'extra', 'position': 0.25}, {'name': 'joint1'}, {'position': 1.0}]
+    parameters = {'publish_rate': 100, 'extra_joints': extra}
     came = []
-    model.controller('states').outputs['joint_states'].connect(
+    start_controller(model, 'states', STATES, parameters).outputs['joint_states'].connect(
         lambda reading: came.append((world.clock.steps, reading))
     )
     world.run(100)
@@ -86,122 +75,57 @@ def test_joint_states_come_at_their_rate_in_alphabetical_order(world):
     assert came[0][1].positions[2] == 0.25
 
 
+FAILED = "Initializing controller 'c' failed"
+NO_GAIN = 'No p gain specified for pid.  Namespace: /arm/c/pid'
+NOT_FOUND = "Could not find resource '{}' in 'hardware_interface::{}JointInterface'."
+
+
 @pytest.mark.parametrize(
-    ('type_name', 'parameters', 'sentences'),
+    ('type_name', 'parameters', 'sentence'),
     [
+        (PID, {'joint': 'joint1'}, NO_GAIN),
+        (PID, {'joint': 'joint1', 'pid': {'p': 'much'}}, NO_GAIN),
+        (PID, {}, 'No joint given (namespace: /arm/c)'),
+        (EFFORTS, {'joints': []}, 'List of joint names is empty.'),
+        (EFFORTS, {'joints': 'joint1'}, "Failed to getParam 'joints' (namespace: /arm/c)."),
         (
-            PID,
-            GAINS | {'joint': 'nose'},
-            (
-                "Exception thrown while initializing controller 'c'.\nCould not find resource "
-                "'nose' in "
-                "'hardware_interface::EffortJointInterface'.",
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            PID,
-            {'joint': 'joint1'},
-            (
-                'No p gain specified for pid.  Namespace: /arm/c/pid',
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            PID,
-            {'joint': 'joint1', 'pid': {'p': 'much'}},
-            (
-                'No p gain specified for pid.  Namespace: /arm/c/pid',
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            PID,
-            {},
-            (
-                'No joint given (namespace: /arm/c)',
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            ONE,
-            {'joint': 'joint1'},
-            (
-                "Exception thrown while initializing controller 'c'.\nCould not find resource "
-                "'joint1' in "
-                "'hardware_interface::PositionJointInterface'.",
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            'effort_controllers/JointGroupEffortController',
-            {'joints': []},
-            (
-                'List of joint names is empty.',
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            'effort_controllers/JointGroupEffortController',
-            {'joints': 'joint1'},
-            (
-                "Failed to getParam 'joints' (namespace: /arm/c).",
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            'effort_controllers/JointGroupEffortController',
+            EFFORTS,
             {'joints': ['joint1', 'nose']},
-            (
-                "Exception thrown: Could not find resource 'nose' in "
-                "'hardware_interface::EffortJointInterface'.",
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
+            f'Exception thrown: {NOT_FOUND.format("nose", "Effort")}',
         ),
-        (
-            STATES,
-            {},
-            (
-                "Parameter 'publish_rate' not set",
-                'Failed to initialize the controller',
-                "Initializing controller 'c' failed",
-            ),
-        ),
-        (
-            'my/Controller',
-            {},
-            (
-                "Could not load controller 'c' because controller type 'my/Controller' does not "
-                'exist.',
-                "Use 'rosservice call controller_manager/list_controller_types' to get the "
-                'available '
-                'types',
-            ),
-        ),
-        (
-            '',
-            {},
-            (
-                "Could not load controller 'c' because the type was not specified. Did you load "
-                'the '
-                "controller configuration on the parameter server (namespace: '/arm/c')?",
-            ),
-        ),
+        (STATES, {}, "Parameter 'publish_rate' not set"),
     ],
 )
-def test_a_controller_that_cannot_be_loaded_gets_upstreams_answer(
-    type_name, parameters, sentences, world
-):
+def test_bad_parameters_get_upstreams_answer(type_name, parameters, sentence, world):
     _, manager = spawn_arm(world)
-    assert refused(manager.load, 'c', type_name, parameters) == sentences
+    answer = (sentence, 'Failed to initialize the controller', FAILED)
+    assert refused(manager.load, 'c', type_name, parameters) == answer
     assert manager.list() == []
     world.run(10)
+
+
+@pytest.mark.parametrize(
+    ('type_name', 'joint', 'interface'), [(PID, 'nose', 'Effort'), (ONE, 'joint1', 'Position')]
+)
+def test_a_joint_that_the_interface_lacks_gets_upstreams_answer(type_name, joint, interface, world):
+    _, manager = spawn_arm(world)
+    assert refused(manager.load, 'c', type_name, GAINS | {'joint': joint}) == (
+        "Exception thrown while initializing controller 'c'.\n"
+        + NOT_FOUND.format(joint, interface),
+        FAILED,
+    )
+
+
+def test_an_unknown_or_missing_type_gets_upstreams_answer(world):
+    _, manager = spawn_arm(world)
+    assert refused(manager.load, 'c', 'my/Controller', {}) == (
+        "Could not load controller 'c' because controller type 'my/Controller' does not exist.",
+        "Use 'rosservice call controller_manager/list_controller_types' to get the available types",
+    )
+    assert refused(manager.load, 'c', '', {}) == (
+        "Could not load controller 'c' because the type was not specified. Did you load the "
+        "controller configuration on the parameter server (namespace: '/arm/c')?",
+    )
 
 
 def test_names_are_unique_and_running_controllers_stay(world):
@@ -277,10 +201,7 @@ def test_a_thousand_switches_leave_nothing_behind(world):
 
 @pytest.mark.parametrize('command', [math.nan, math.inf, -math.inf])
 def test_a_command_that_is_not_finite_is_refused(command, world):
-    model, manager = spawn_arm(world, POSITION)
-    manager.load('arm', GROUP, BOTH)
-    manager.switch(['arm'])
-    controller = model.controller('arm')
+    model, controller = started(world)
     controller.command([0.1, 0.1])
     with pytest.raises(ValueError, match='finite'):
         controller.command([0.2, command])
@@ -311,16 +232,10 @@ def test_an_unknown_controller_is_named_with_those_that_exist(world):
 @pytest.mark.parametrize('interface', [EFFORT, POSITION, VELOCITY])
 def test_a_restored_world_repeats_bit_for_bit(interface, world):
     kind = interface.rpartition('/')[2].removesuffix('JointInterface').lower()
-    name = {
-        'effort': 'JointGroupEffortController',
-        'position': 'JointGroupPositionController',
-        'velocity': 'JointGroupVelocityController',
-    }[kind]
+    name = f'JointGroup{kind.capitalize()}Controller'
     gains = {one: {'p': 80.0, 'i': 5.0, 'd': 3.0, 'i_clamp': 4.0} for one in BOTH['joints']}
     model, manager = spawn_arm(world, interface, {} if kind == 'velocity' else gains)
-    manager.load('arm', f'{kind}_controllers/{name}', BOTH)
-    manager.switch(['arm'])
-    controller = model.controller('arm')
+    controller = start_controller(model, 'arm', f'{kind}_controllers/{name}', BOTH)
     controller.command([0.7, -0.4])
     world.run(50)
     saved = world.save_state()
@@ -340,10 +255,8 @@ def test_a_restored_world_repeats_bit_for_bit(interface, world):
 
 
 def test_commands_survive_a_reset_of_the_simulation(world):
-    model, manager = spawn_arm(world, POSITION)
-    manager.load('arm', GROUP, BOTH)
-    manager.switch(['arm'])
-    model.controller('arm').command([0.5, -0.3])
+    model, controller = started(world)
+    controller.command([0.5, -0.3])
     world.run(LATER)
     world.reset_simulation()
     world.run(LATER)
@@ -351,10 +264,8 @@ def test_commands_survive_a_reset_of_the_simulation(world):
 
 
 def test_controllers_go_on_through_a_reset_of_the_world(world):
-    model, manager = spawn_arm(world, POSITION)
-    manager.load('arm', 'position_controllers/JointTrajectoryController', BOTH)
-    manager.switch(['arm'])
-    model.controller('arm').command([0.5, -0.3], seconds=0.5)
+    model, controller = started(world, TRAJECTORY)
+    controller.command([0.5, -0.3], seconds=0.5)
     world.run(250)
     world.reset_world()
     world.run(400)
@@ -362,24 +273,20 @@ def test_controllers_go_on_through_a_reset_of_the_world(world):
 
 
 def test_a_trajectory_holds_after_a_reset_of_the_simulation(world):
-    model, manager = spawn_arm(world, POSITION)
-    manager.load('arm', 'position_controllers/JointTrajectoryController', BOTH)
-    manager.switch(['arm'])
-    model.controller('arm').command([0.5, -0.3], seconds=0.5)
+    model, controller = started(world, TRAJECTORY)
+    controller.command([0.5, -0.3], seconds=0.5)
     world.run(250)
     world.reset_simulation()
     world.run(400)
     assert model.joint('joint1').position == pytest.approx(0.0, abs=1e-3)
-    model.controller('arm').command([0.5, -0.3], seconds=0.5)
+    controller.command([0.5, -0.3], seconds=0.5)
     world.run(600)
     assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
 
 
 def test_a_controller_that_fails_does_not_stop_the_world(world, caplog):
-    model, manager = spawn_arm(world)
-    manager.load('c', PID, GAINS)
-    manager.switch(['c'])
-    model.controller('c').update = None
+    model, _ = spawn_arm(world)
+    start_controller(model, 'c', PID, GAINS).update = None
     world.run(10)
     assert 'internal fault of RosControl; the simulation goes on' in caplog.text
     assert world.clock.steps == 10
@@ -433,7 +340,7 @@ def test_all_types_of_the_recorded_controller_manager_can_be_loaded():
     ],
 )
 def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(kind, paths, huge, world):
-    model, manager = spawn_arm(world)
+    model, _ = spawn_arm(world)
     parameters = {
         'joint': 'joint1',
         'joints': ['joint1'],
@@ -449,21 +356,19 @@ def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(kind, path
             inner = inner.setdefault(section, {})
         inner[last] = huge
     with contextlib.suppress(ControllerError):
-        manager.load('c', kind, parameters)
-        manager.switch(['c'])
-        if hasattr(model.controller('c'), 'command'):
+        controller = start_controller(model, 'c', kind, parameters)
+        if hasattr(controller, 'command'):
             wanted = 0.5 if kind != 'effort_controllers/JointTrajectoryController' else [0.5]
-            model.controller('c').command(wanted)
+            controller.command(wanted)
     world.run(200)
     assert world.rebuilds == 0
     assert not model.has_diverged()
 
 
 def test_a_command_that_overflows_is_none(world):
-    model, manager = spawn_arm(world)
-    manager.load('c', PID, GAINS | {'pid': {'p': 1e200, 'd': -1e200}})
-    manager.switch(['c'])
-    model.controller('c').command(1e200)
+    model, _ = spawn_arm(world)
+    gains = GAINS | {'pid': {'p': 1e200, 'd': -1e200}}
+    start_controller(model, 'c', PID, gains).command(1e200)
     world.run(50)
     assert not model.has_diverged()
     assert world.rebuilds == 0

@@ -2,8 +2,8 @@
 
 import pytest
 from support.cars import BASE, RADIUS, SIDES, TRACK, car
+from support.controllers import start_controller
 
-from rosbots_description.sim import World
 from rosbots_description.sim.controllers import ControllerError
 
 ALL = tuple(name for name, _, _ in SIDES)
@@ -20,20 +20,12 @@ PARAMETERS = {
 ARM = (BASE + TRACK) / 2.0
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
 def spawned(world, parameters=PARAMETERS):
     """Return a car on ice, as it has no rollers, and its running controller."""
     bot = world.spawn(car(steered=(), driven=ALL, mu=0.0), name='car', z=RADIUS)
-    manager = bot.plugin('gazebo_ros_control').manager
-    manager.load('drive', TYPE, parameters)
-    manager.switch(['drive'])
+    drive = start_controller(bot, 'drive', TYPE, parameters)
     world.run(100)
-    return bot, bot.controller('drive')
+    return bot, drive
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
 """The mimic plugin of roboticsgroup: a joint follows another one."""
 
 import pytest
-from support.controllers import EFFORT, arm
-
-from rosbots_description.sim import World
+from support.controllers import EFFORT, arm, start_controller
 
 LIBRARIES = [
     'libroboticsgroup_gazebo_mimic_joint_plugin.so',
@@ -14,12 +12,6 @@ TAGS = (
     '<offset>0.1</offset>'
 )
 CUT = '<transmission name="joint2_trans">'
-
-
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
 
 
 def spawned(world, tags=TAGS, library=LIBRARIES[0]):
@@ -34,14 +26,10 @@ def spawned(world, tags=TAGS, library=LIBRARIES[0]):
         ),
         name='arm',
     )
-    manager = bot.plugin('gazebo_ros_control').manager
-    manager.load(
-        'arm',
-        'effort_controllers/JointPositionController',
-        {'joint': 'joint1', 'pid': {'p': 500.0, 'd': 50.0, 'i': 50.0, 'i_clamp': 20.0}},
-    )
-    manager.switch(['arm'])
-    bot.controller('arm').command(0.6)
+    gains = {'p': 500.0, 'd': 50.0, 'i': 50.0, 'i_clamp': 20.0}
+    parameters = {'joint': 'joint1', 'pid': gains}
+    kind = 'effort_controllers/JointPositionController'
+    start_controller(bot, 'arm', kind, parameters).command(0.6)
     return bot
 
 

@@ -1,9 +1,8 @@
 """Sensors of a robot, reported by controllers."""
 
 import pytest
-from support.controllers import arm
+from support.controllers import POSITION, arm, start_controller
 
-from rosbots_description.sim import World
 from rosbots_description.sim.controllers import ControllerError
 
 IMU = (
@@ -19,25 +18,10 @@ WRENCHES = 'force_torque_sensor_controller/ForceTorqueSensorController'
 WEIGHT = 0.6 * 9.8  # [N] of the last link
 
 
-@pytest.fixture
-def world():
-    with World.empty() as made:
-        yield made
-
-
 def started(world, kind, extra, parameters):
     """Return the arm, at rest and held upright, and its running controller."""
-    bot = world.spawn(
-        arm(
-            'hardware_interface/PositionJointInterface',
-            lambda text: text.replace('</robot>', extra),
-        ),
-        name='arm',
-    )
-    manager = bot.plugin('gazebo_ros_control').manager
-    manager.load('sensors', kind, parameters)
-    manager.switch(['sensors'])
-    return bot, bot.controller('sensors')
+    bot = world.spawn(arm(POSITION, lambda text: text.replace('</robot>', extra)), name='arm')
+    return bot, start_controller(bot, 'sensors', kind, parameters)
 
 
 def test_an_imu_is_reported_at_the_rate(world):

@@ -92,57 +92,53 @@ def test_a_robot_drives_on_where_it_was_saved(name, tmp_path, caplog):
             assert farthest(world, other) < DRIVEN
 
 
-def test_bodies_in_flight_keep_their_poses_over_many_saves(tmp_path):
-    with World.empty() as world:
-        arm = world.spawn(ARM, pose=Pose((0.0, 0.0, 30.0), TURN))
-        crate = world.spawn(CRATE, pose=Pose((5.0, 0.0, 40.0), TURN))
-        crate.set_twist(crate.twist._replace(angular=(3.0, -2.0, 1.0)))
-        arm.joint('turn').set_motor(4.0, 50.0)
-        for turn in range(8):
-            world.run(100)
-            world.save(tmp_path / f'{turn}.world')
-            with World.from_file(tmp_path / f'{turn}.world') as other:
-                require_same(world, other)
-                other.save(tmp_path / 'again.world', overwrite=True)
-                with World.from_file(tmp_path / 'again.world') as third:
-                    assert poses(third) == poses(world)
+def test_bodies_in_flight_keep_their_poses_over_many_saves(world, tmp_path):
+    arm = world.spawn(ARM, pose=Pose((0.0, 0.0, 30.0), TURN))
+    crate = world.spawn(CRATE, pose=Pose((5.0, 0.0, 40.0), TURN))
+    crate.set_twist(crate.twist._replace(angular=(3.0, -2.0, 1.0)))
+    arm.joint('turn').set_motor(4.0, 50.0)
+    for turn in range(8):
+        world.run(100)
+        world.save(tmp_path / f'{turn}.world')
+        with World.from_file(tmp_path / f'{turn}.world') as other:
+            require_same(world, other)
+            other.save(tmp_path / 'again.world', overwrite=True)
+            with World.from_file(tmp_path / 'again.world') as third:
+                assert poses(third) == poses(world)
 
 
 @pytest.mark.parametrize('place', [Pose((0.0, 0.0, 3.0)), Pose((1.0, 2.0, 3.0), TURN)])
-def test_models_on_joints_to_the_world_keep_their_poses(place, tmp_path):
-    with World.empty() as world:
-        doors = world.spawn(DOORS, pose=place)
-        doors.joint('first_hinge').set_position(3.0, 2.0)
-        doors.joint('second_hinge').set_motor(-2.0, math.inf)
-        for turn in range(3):
-            world.run(300)
-            assert world.save(tmp_path / f'{turn}.world') == ()
-            with World.from_file(tmp_path / f'{turn}.world') as other:
-                require_same(world, other)
-                assert other.model('doors').joint('second_hinge').motor == (-2.0, math.inf)
-        assert doors.joint('first_hinge').position > math.pi
-
-
-def test_a_reset_returns_models_to_where_they_were_spawned(tmp_path):
-    with World.empty() as world:
-        world.spawn(CRATE, 'another', pose=Pose((1.0, 2.0, 3.0), TURN))
-        world.run(500)
-        world.model('ground_plane').set_pose(Pose((0.0, 0.0, -0.5), TURN))
-        world.save(tmp_path / 'saved.world')
-        with World.from_file(tmp_path / 'saved.world') as other:
+def test_models_on_joints_to_the_world_keep_their_poses(world, place, tmp_path):
+    doors = world.spawn(DOORS, pose=place)
+    doors.joint('first_hinge').set_position(3.0, 2.0)
+    doors.joint('second_hinge').set_motor(-2.0, math.inf)
+    for turn in range(3):
+        world.run(300)
+        assert world.save(tmp_path / f'{turn}.world') == ()
+        with World.from_file(tmp_path / f'{turn}.world') as other:
             require_same(world, other)
-            other.reset_simulation()
-            assert other.time == 0.0
-            assert math.dist(other.model('another').pose.position, (1.0, 2.0, 3.0)) < 1e-12
+            assert other.model('doors').joint('second_hinge').motor == (-2.0, math.inf)
+    assert doors.joint('first_hinge').position > math.pi
 
 
-def test_poses_that_are_changed_by_hand_are_believed(tmp_path):
+def test_a_reset_returns_models_to_where_they_were_spawned(world, tmp_path):
+    world.spawn(CRATE, 'another', pose=Pose((1.0, 2.0, 3.0), TURN))
+    world.run(500)
+    world.model('ground_plane').set_pose(Pose((0.0, 0.0, -0.5), TURN))
+    world.save(tmp_path / 'saved.world')
+    with World.from_file(tmp_path / 'saved.world') as other:
+        require_same(world, other)
+        other.reset_simulation()
+        assert other.time == 0.0
+        assert math.dist(other.model('another').pose.position, (1.0, 2.0, 3.0)) < 1e-12
+
+
+def test_poses_that_are_changed_by_hand_are_believed(world, tmp_path):
     path = tmp_path / 'saved.world'
-    with World.empty() as world:
-        world.spawn(CRATE, pose=Pose((1.0, 2.0, 3.0)))
-        world.run(100)
-        z = repr(world.model('crate').pose.position[2])
-        world.save(path)
+    world.spawn(CRATE, pose=Pose((1.0, 2.0, 3.0)))
+    world.run(100)
+    z = repr(world.model('crate').pose.position[2])
+    world.save(path)
     path.write_text(path.read_text().replace(z, '7.5'))
     with World.from_file(path) as other:
         assert other.model('crate').pose.position[2] == pytest.approx(7.5)
@@ -163,22 +159,21 @@ def test_parts_of_its_file_that_nothing_acts_on_are_saved_again(tmp_path):
         assert list(again.lights) == ['lamp']
 
 
-def test_what_is_not_in_the_file_is_named(tmp_path):
+def test_what_is_not_in_the_file_is_named(world, tmp_path):
     part = LINK.format('hill', '0 0 0 0 0 0').replace(
         '</link>',
         '<collision name="c"><geometry><heightmap/></geometry></collision>'
         '<sensor name="s" type="sonar"/></link>',
     )
-    with World.empty() as world:
-        hill = world.spawn(f'<sdf version="1.6"><model name="hill">{part}</model></sdf>')
-        world.apply_wrench(hill.link('hill'), (1.0, 0.0, 0.0))
-        hill.link('hill').scale_friction(0.5)
-        assert world.save(tmp_path / 'a.world') == (
-            f"of model 'hill' what was left out: {hill.spec.left_out[0]}",
-            "of model 'hill' the factors on mass and friction",
-            'forces and efforts that act for a time',
-        )
-        assert 'heightmap' in hill.spec.left_out[0]
-        assert '<sensor name="s" type="sonar"' in (tmp_path / 'a.world').read_text()
-        with pytest.raises(SimError, match='exists already'):
-            world.save(tmp_path / 'a.world')
+    hill = world.spawn(f'<sdf version="1.6"><model name="hill">{part}</model></sdf>')
+    world.apply_wrench(hill.link('hill'), (1.0, 0.0, 0.0))
+    hill.link('hill').scale_friction(0.5)
+    assert world.save(tmp_path / 'a.world') == (
+        f"of model 'hill' what was left out: {hill.spec.left_out[0]}",
+        "of model 'hill' the factors on mass and friction",
+        'forces and efforts that act for a time',
+    )
+    assert 'heightmap' in hill.spec.left_out[0]
+    assert '<sensor name="s" type="sonar"' in (tmp_path / 'a.world').read_text()
+    with pytest.raises(SimError, match='exists already'):
+        world.save(tmp_path / 'a.world')

@@ -70,32 +70,30 @@ def test_heavier_pendulum_on_a_spring_swings_slower():
     assert zero_crossing(4.0) / zero_crossing(1.0) == pytest.approx(2.0, rel=0.02)
 
 
-def test_scales_outlast_a_reset_and_a_rebuild_and_are_restored():
-    with World.empty() as world:
-        sled = world.spawn(SLED, z=0.1)
-        link = sled.link('box')
-        world.run(seconds=0.2)
-        start = world.save_state()
-        sled.scale_mass(2.0)
-        link.scale_friction(0.5)
-        changed = world.save_state()
-        world.restore(start)
-        assert (sled.mass_scale, link.friction_scale) == (1.0, 1.0)
-        world.restore(changed)
-        assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
-        world.reset_simulation()
-        assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
-        world.rebuild([])
-        assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
-        sled.respecify(sled.spec)
-        assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
+def test_scales_outlast_a_reset_and_a_rebuild_and_are_restored(world):
+    sled = world.spawn(SLED, z=0.1)
+    link = sled.link('box')
+    world.run(seconds=0.2)
+    start = world.save_state()
+    sled.scale_mass(2.0)
+    link.scale_friction(0.5)
+    changed = world.save_state()
+    world.restore(start)
+    assert (sled.mass_scale, link.friction_scale) == (1.0, 1.0)
+    world.restore(changed)
+    assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
+    world.reset_simulation()
+    assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
+    world.rebuild([])
+    assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
+    sled.respecify(sled.spec)
+    assert (sled.mass_scale, link.friction_scale) == (2.0, 0.5)
 
 
 @pytest.mark.parametrize('factor', [-1.0, math.nan, math.inf])
-def test_factor_that_cannot_be_is_named(factor):
-    with World.empty() as world:
-        sled = world.spawn(SLED)
-        with pytest.raises(ValueError, match="mass of model 'sled'"):
-            sled.scale_mass(factor)
-        with pytest.raises(ValueError, match="friction of link 'sled::box'"):
-            sled.link('box').scale_friction(factor)
+def test_factor_that_cannot_be_is_named(world, factor):
+    sled = world.spawn(SLED)
+    with pytest.raises(ValueError, match="mass of model 'sled'"):
+        sled.scale_mass(factor)
+    with pytest.raises(ValueError, match="friction of link 'sled::box'"):
+        sled.link('box').scale_friction(factor)

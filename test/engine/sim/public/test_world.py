@@ -30,12 +30,6 @@ PENDULUM = f"""<robot name="pendulum"><link name="world"/>{box_urdf('1 1 1', 2.0
 </joint></robot>"""
 
 
-@pytest.fixture
-def world():
-    with World.empty() as opened:
-        yield opened
-
-
 def test_robot_moves_as_in_the_world_of_the_server(world):
     robot = world.spawn(XACRO, z=0.5)
     robot.plugin('diff_drive').command(0.5, 0.2)
@@ -305,9 +299,8 @@ def test_effort_turns_a_joint_until_it_is_cleared():
         assert hinge.velocity == pytest.approx(0.2)
 
 
-def test_use_of_a_closed_world_is_an_error():
-    with World.empty() as world:
-        world.step()
+def test_use_of_a_closed_world_is_an_error(world):
+    world.step()
     world.close()
     for call in (world.step, lambda: world.spawn(CRATE)):
         with pytest.raises(SimError, match='this world is closed'):

@@ -26,30 +26,28 @@ def diverged(caplog):
 
 @pytest.mark.parametrize('joint', ['slew', 'swing'])
 @pytest.mark.parametrize('position', [math.nan, math.inf, 1e10])
-def test_divergence_of_any_link_is_detected(caplog, joint, position):
-    with empty_world() as world:
-        crane = world.spawn(urdf_spec(CRANE), 'crane', Pose((0.0, 0.0, 5.0)))
-        world.run(10)
-        crane.joint(joint).set_position(position)
-        world.run(PERIOD)
-        assert len(diverged(caplog)) == 1
-        assert abs(crane.joint(joint).position) < 1.0
+def test_divergence_of_any_link_is_detected(world, caplog, joint, position):
+    crane = world.spawn(urdf_spec(CRANE), 'crane', Pose((0.0, 0.0, 5.0)))
+    world.run(10)
+    crane.joint(joint).set_position(position)
+    world.run(PERIOD)
+    assert len(diverged(caplog)) == 1
+    assert abs(crane.joint(joint).position) < 1.0
 
 
 @pytest.mark.parametrize('step_size', [10.0, 0.5])
-def test_models_are_checked_at_once_after_a_change_of_the_step_size(caplog, step_size):
-    with empty_world() as world:
-        usual = world.physics
-        world.run(PERIOD // 2)
-        world.set_physics(replace(usual, step_size=step_size))
-        box = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0.0, 0.0, 0.5)))
-        world.run(5)
-        world.set_physics(usual)
-        box.set_twist(Twist((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)))
-        world.run(2)
-        assert len(diverged(caplog)) == 1
-        world.run(2 * PERIOD)
-        assert box.pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
+def test_models_are_checked_at_once_after_a_change_of_the_step_size(world, caplog, step_size):
+    usual = world.physics
+    world.run(PERIOD // 2)
+    world.set_physics(replace(usual, step_size=step_size))
+    box = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0.0, 0.0, 0.5)))
+    world.run(5)
+    world.set_physics(usual)
+    box.set_twist(Twist((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    world.run(2)
+    assert len(diverged(caplog)) == 1
+    world.run(2 * PERIOD)
+    assert box.pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
 
 
 @pytest.mark.parametrize(('first', 'then'), [(0.001, 0.004), (0.004, 0.0005)])

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support import SETTLED, SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
+from support import SETTLED, SPAWN_POSE, box_urdf, robot_spec, urdf_spec
 
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 from rosbots_description.sim.core.transforms import Pose
@@ -33,18 +33,17 @@ def resident_bytes():
     return pages * 4096
 
 
-def test_the_robot_has_gazebos_links_and_mass():
-    with empty_world() as world:
-        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        assert [link.scoped_name for link in model.links.values()] == [
-            'rosbots::base_footprint',
-            'rosbots::wheel_left_link',
-            'rosbots::wheel_right_link',
-        ]
-        assert sum(link.inertial.mass for link in model.spec.links) == pytest.approx(1.4)
+def test_the_robot_has_gazebos_links_and_mass(world):
+    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    assert [link.scoped_name for link in model.links.values()] == [
+        'rosbots::base_footprint',
+        'rosbots::wheel_left_link',
+        'rosbots::wheel_right_link',
+    ]
+    assert sum(link.inertial.mass for link in model.spec.links) == pytest.approx(1.4)
 
 
-def test_order_of_a_step_is_time_hooks_physics():
+def test_order_of_a_step_is_time_hooks_physics(world):
     class Watch(Hook):
         due = 1
 
@@ -52,82 +51,76 @@ def test_order_of_a_step_is_time_hooks_physics():
             seen.append((world.clock.steps, model.pose.position[2]))
 
     seen = []
-    with empty_world() as world:
-        model = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0, 0, 5.0)))
-        world.schedule.add(Watch())
-        world.run(1)
-        assert seen == [(1, 5.0)]
-        assert model.pose.position[2] < 5.0
+    model = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0, 0, 5.0)))
+    world.schedule.add(Watch())
+    world.run(1)
+    assert seen == [(1, 5.0)]
+    assert model.pose.position[2] < 5.0
 
 
-def test_reset_world_resets_poses_and_keeps_time_and_joint_angles():
-    with empty_world() as world:
+def test_reset_world_resets_poses_and_keeps_time_and_joint_angles(world):
+    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.run(SETTLED)
+    next(iter(model.plugins.values())).command(0.5, 0.0)
+    world.run(2000)
+    angle = model.joint('wheel_left_joint').position
+    world.reset_world()
+    assert world.clock.steps == SETTLED + 2000
+    assert model.pose.position == pytest.approx(SPAWN_POSE.position)
+    assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0))
+    assert angle > 1.0
+    assert model.joint('wheel_left_joint').position == pytest.approx(angle)
+    world.run(SETTLED)
+    standing = model.pose.position
+    world.run(1000)
+    assert math.dist(standing, model.pose.position) < 1e-3  # the command is cleared
+
+
+def test_repeated_spawns_and_deletions_do_not_leak_memory(world):
+    neighbour = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5, 5, 0.5)))
+    before = None
+    for cycle in range(CYCLES):
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.run(SETTLED)
-        next(iter(model.plugins.values())).command(0.5, 0.0)
-        world.run(2000)
-        angle = model.joint('wheel_left_joint').position
-        world.reset_world()
-        assert world.clock.steps == SETTLED + 2000
-        assert model.pose.position == pytest.approx(SPAWN_POSE.position)
-        assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0))
-        assert angle > 1.0
-        assert model.joint('wheel_left_joint').position == pytest.approx(angle)
-        world.run(SETTLED)
-        standing = model.pose.position
-        world.run(1000)
-        assert math.dist(standing, model.pose.position) < 1e-3  # the command is cleared
+        if cycle % 2:
+            next(iter(model.plugins.values())).command(0.5, 0.5)
+        world.run(30)
+        world.delete('rosbots')
+        if cycle == 20:
+            before = resident_bytes()
+    assert resident_bytes() - before < LEAK_ALLOWED
+    assert list(world.models) == ['ground_plane', 'box']
+    assert neighbour.pose.position == pytest.approx((5.0, 5.0, 0.5), abs=1e-3)
 
 
-def test_repeated_spawns_and_deletions_do_not_leak_memory():
-    with empty_world() as world:
-        neighbour = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5, 5, 0.5)))
-        before = None
-        for cycle in range(CYCLES):
-            model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-            if cycle % 2:
-                next(iter(model.plugins.values())).command(0.5, 0.5)
-            world.run(30)
-            world.delete('rosbots')
-            if cycle == 20:
-                before = resident_bytes()
-        assert resident_bytes() - before < LEAK_ALLOWED
-        assert list(world.models) == ['ground_plane', 'box']
-        assert neighbour.pose.position == pytest.approx((5.0, 5.0, 0.5), abs=1e-3)
-
-
-def test_duplicate_and_empty_names_are_rejected():
+def test_duplicate_and_empty_names_are_rejected(world):
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
-    with empty_world() as world:
-        world.spawn(spec, 'box', Pose((0, 0, 2.0)))
-        with pytest.raises(ModelError, match="'box' is in the world already"):
-            world.spawn(spec, 'box', Pose((0, 0, 4.0)))
-        with pytest.raises(ModelError, match='needs a name'):
-            world.spawn(spec, '', Pose((0, 0, 4.0)))
-        with pytest.raises(NotFoundError, match="no model named 'ball'"):
-            world.delete('ball')
+    world.spawn(spec, 'box', Pose((0, 0, 2.0)))
+    with pytest.raises(ModelError, match="'box' is in the world already"):
+        world.spawn(spec, 'box', Pose((0, 0, 4.0)))
+    with pytest.raises(ModelError, match='needs a name'):
+        world.spawn(spec, '', Pose((0, 0, 4.0)))
+    with pytest.raises(NotFoundError, match="no model named 'ball'"):
+        world.delete('ball')
 
 
-def test_entities_are_found_by_plain_and_scoped_names_in_world_order():
-    with empty_world() as world:
-        world.spawn(robot_spec(), 'one', SPAWN_POSE)
-        world.spawn(robot_spec(), 'two', Pose((3.0, 0.0, 0.5)))
-        assert world.find_entity('wheel_left_link').scoped_name == 'one::wheel_left_link'
-        assert world.find_entity('two::wheel_left_link').scoped_name == 'two::wheel_left_link'
-        assert world.find_model('two').name == 'two'
-        assert world.find_model('wheel_left_link') is None
-        assert world.find_joint('two::wheel_left_joint').model.name == 'two'
-        assert world.find_entity('base_link') is None  # reduced
-        collision = world.find_entity('wheel_left_link_collision')
-        assert collision.state()[0].position[1] == pytest.approx(0.5125, abs=1e-3)
+def test_entities_are_found_by_plain_and_scoped_names_in_world_order(world):
+    world.spawn(robot_spec(), 'one', SPAWN_POSE)
+    world.spawn(robot_spec(), 'two', Pose((3.0, 0.0, 0.5)))
+    assert world.find_entity('wheel_left_link').scoped_name == 'one::wheel_left_link'
+    assert world.find_entity('two::wheel_left_link').scoped_name == 'two::wheel_left_link'
+    assert world.find_model('two').name == 'two'
+    assert world.find_model('wheel_left_link') is None
+    assert world.find_joint('two::wheel_left_joint').model.name == 'two'
+    assert world.find_entity('base_link') is None  # reduced
+    collision = world.find_entity('wheel_left_link_collision')
+    assert collision.state()[0].position[1] == pytest.approx(0.5125, abs=1e-3)
 
 
-def test_links_of_nested_models_are_found_by_each_of_their_names():
+def test_links_of_nested_models_are_found_by_each_of_their_names(world):
     body = LinkSpec('inner::body', inertial=Inertial(1.0, Pose(), 0.1, 0.1, 0.1))
-    with empty_world() as world:
-        link = world.spawn(ModelSpec('outer', (body,)), 'outer', Pose()).links['inner::body']
-        for name in ('outer::inner::body', 'inner::body', 'body'):
-            assert world.find_entity(name) is link
+    link = world.spawn(ModelSpec('outer', (body,)), 'outer', Pose()).links['inner::body']
+    for name in ('outer::inner::body', 'inner::body', 'body'):
+        assert world.find_entity(name) is link
 
 
 NESTED = """<sdf version="1.6"><model name="outer">
@@ -139,53 +132,47 @@ NESTED = """<sdf version="1.6"><model name="outer">
   </model></model></sdf>"""
 
 
-def test_nested_models_have_their_own_names_and_frames():
+def test_nested_models_have_their_own_names_and_frames(world):
     spec, _ = load_sdf(NESTED, 'robot', source='test', find_model=lambda _: None)
-    with empty_world() as world:
-        world.spawn(spec, 'robot', Pose((0.0, 0.0, 5.0)))
-        for name in ('robot::arm', 'arm'):
-            arm = world.find_model(name)
-            assert arm.scoped_name == 'robot::arm'
-            assert arm.parent_name == 'robot'
-        assert arm.state()[0].position == pytest.approx((1.0, 0.0, 5.0))
-        assert world.frame('hand')[0].position == pytest.approx((1.0, 0.0, 6.0))
-        assert world.find_model('hand').parent_name == 'arm'
-        assert [link.name for link in arm.spec.links] == ['upper', 'hand::palm']
-        arm.set_pose(Pose((2.0, 0.0, 7.0)))
-        assert arm.state()[0].position == pytest.approx((2.0, 0.0, 7.0))
+    world.spawn(spec, 'robot', Pose((0.0, 0.0, 5.0)))
+    for name in ('robot::arm', 'arm'):
+        arm = world.find_model(name)
+        assert arm.scoped_name == 'robot::arm'
+        assert arm.parent_name == 'robot'
+    assert arm.state()[0].position == pytest.approx((1.0, 0.0, 5.0))
+    assert world.frame('hand')[0].position == pytest.approx((1.0, 0.0, 6.0))
+    assert world.find_model('hand').parent_name == 'arm'
+    assert [link.name for link in arm.spec.links] == ['upper', 'hand::palm']
+    arm.set_pose(Pose((2.0, 0.0, 7.0)))
+    assert arm.state()[0].position == pytest.approx((2.0, 0.0, 7.0))
 
 
 @pytest.mark.parametrize('name', ['', 'world', 'map', '/map'])
-def test_each_name_of_the_world_is_accepted(name):
-    with empty_world() as world:
-        assert world.frame(name)[0] == Pose()
+def test_each_name_of_the_world_is_accepted(world, name):
+    assert world.frame(name)[0] == Pose()
 
 
-def test_an_unknown_frame_is_an_error():
-    with empty_world() as world, pytest.raises(NotFoundError, match="'base_link'"):
+def test_an_unknown_frame_is_an_error(world):
+    with pytest.raises(NotFoundError, match="'base_link'"):
         world.frame('base_link')
 
 
-def test_model_is_spawned_without_an_unknown_plugin(caplog):
+def test_model_is_spawned_without_an_unknown_plugin(world, caplog):
     plugin = PluginSpec('p', 'libnope.so', Element('plugin'))
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
-    with empty_world() as world:
-        model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (plugin,)}), 'b', Pose())
-        assert model.plugins == {}
-        assert model.left_out == ["plugin 'libnope.so'"]
+    model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (plugin,)}), 'b', Pose())
+    assert model.plugins == {}
+    assert model.left_out == ["plugin 'libnope.so'"]
     assert caplog.messages == [
         "model 'b', plugin 'p': unknown library 'libnope.so'; nothing is loaded "
         'from GAZEBO_PLUGIN_PATH; see doc/gazebo_compatibility.md'
     ]
 
 
-def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
+def test_a_plugin_that_is_known_but_not_supported_is_a_warning(world, caplog):
     plugin = PluginSpec('imu', 'libgazebo_ros_elevator.so', Element('plugin'))
-    with empty_world() as world:
-        model = world.spawn(
-            replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose()
-        )
-        assert model.left_out == ["plugin 'libgazebo_ros_elevator.so'"]
+    model = world.spawn(replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose())
+    assert model.left_out == ["plugin 'libgazebo_ros_elevator.so'"]
     ((level, sentence),) = [(r.levelname, r.getMessage()) for r in caplog.records]
     assert (level, sentence) == (
         'WARNING',
@@ -194,17 +181,16 @@ def test_a_plugin_that_is_known_but_not_supported_is_a_warning(caplog):
     )
 
 
-def test_model_is_spawned_without_a_failing_plugin(caplog):
+def test_model_is_spawned_without_a_failing_plugin(world, caplog):
     drive = PluginSpec('d', 'libgazebo_ros_diff_drive.so', Element('plugin'))
     spec = urdf_spec(box_urdf('1 1 1', 1.0))
-    with empty_world() as world:
-        model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (drive,)}), 'b', Pose())
-        assert model.plugins == {}
-        world.run(10)
+    model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (drive,)}), 'b', Pose())
+    assert model.plugins == {}
+    world.run(10)
     assert "couldn't get wheel hinge joint named left_joint" in caplog.text
 
 
-def test_failing_plugin_does_not_set_motors():
+def test_failing_plugin_does_not_set_motors(world):
     spec = robot_spec()
     (drive,) = spec.plugins
     tags = tuple(
@@ -212,28 +198,26 @@ def test_failing_plugin_does_not_set_motors():
         for tag in drive.element.children
     )
     broken = replace(drive, element=replace(drive.element, children=tags))
-    with empty_world() as world:
-        model = world.spawn(replace(spec, plugins=(broken,)), 'rosbots', SPAWN_POSE)
-        assert model.plugins == {}
-        assert model.body.motors['wheel_left_joint'] == (0.0, 0.0)
+    model = world.spawn(replace(spec, plugins=(broken,)), 'rosbots', SPAWN_POSE)
+    assert model.plugins == {}
+    assert model.body.motors['wheel_left_joint'] == (0.0, 0.0)
 
 
-def test_failed_spawn_leaves_nothing_behind(monkeypatch):
+def test_failed_spawn_leaves_nothing_behind(world, monkeypatch):
     def break_down(plugin):
         raise RuntimeError('internal error')
 
-    with empty_world() as world:
-        monkeypatch.setattr(DiffDrive, 'load', break_down)
-        with pytest.raises(RuntimeError):
-            world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        monkeypatch.undo()
-        assert list(world.models) == ['ground_plane']
+    monkeypatch.setattr(DiffDrive, 'load', break_down)
+    with pytest.raises(RuntimeError):
         world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.run(SETTLED)
-        world.delete('rosbots')
+    monkeypatch.undo()
+    assert list(world.models) == ['ground_plane']
+    world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.run(SETTLED)
+    world.delete('rosbots')
 
 
-def test_partly_created_body_is_removed():
+def test_partly_created_body_is_removed(world):
     good, bad = (
         LinkSpec(name, Pose((0.0, 0.0, height)), collisions=(Collision('c', shape),))
         for name, height, shape in (
@@ -242,24 +226,22 @@ def test_partly_created_body_is_removed():
         )
     )
     ball = urdf_spec(box_urdf('0.2 0.2 0.2', 1.0))
-    with empty_world() as world:
-        with pytest.raises(ModelError):
-            world.spawn(ModelSpec('wall', (good, bad), static=True), 'wall', Pose())
-        box = world.spawn(ball, 'box', Pose((0.0, 0.0, 2.0)))
-        world.run(1500)
-        assert box.pose.position[2] == pytest.approx(0.1, abs=0.01)  # no invisible body in its way
+    with pytest.raises(ModelError):
+        world.spawn(ModelSpec('wall', (good, bad), static=True), 'wall', Pose())
+    box = world.spawn(ball, 'box', Pose((0.0, 0.0, 2.0)))
+    world.run(1500)
+    assert box.pose.position[2] == pytest.approx(0.1, abs=0.01)  # no invisible body in its way
 
 
-def test_reset_world_resets_static_models():
+def test_reset_world_resets_static_models(world):
     static = box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>')
-    with empty_world() as world:
-        wall = world.spawn(urdf_spec(static), 'wall', Pose((1.0, 0.0, 0.5)))
-        wall.set_pose(Pose((7.0, 0.0, 0.5)))
-        world.reset_world()
-        assert wall.pose.position == pytest.approx((1.0, 0.0, 0.5))
+    wall = world.spawn(urdf_spec(static), 'wall', Pose((1.0, 0.0, 0.5)))
+    wall.set_pose(Pose((7.0, 0.0, 0.5)))
+    world.reset_world()
+    assert wall.pose.position == pytest.approx((1.0, 0.0, 0.5))
 
 
-def test_listeners_are_notified_of_spawns_deletions_and_resets():
+def test_listeners_are_notified_of_spawns_deletions_and_resets(world):
     class Listener:
         def model_spawned(self, model):
             heard.append(('spawned', model.name, len(model.plugins)))
@@ -271,20 +253,18 @@ def test_listeners_are_notified_of_spawns_deletions_and_resets():
             heard.append('reset')
 
     heard = []
-    with empty_world() as world:
-        world.listeners.append(Listener())
-        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.reset_world()
-        world.delete('rosbots')
+    world.listeners.append(Listener())
+    world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.reset_world()
+    world.delete('rosbots')
     assert heard == [('spawned', 'rosbots', 1), 'reset', ('deleted', 'rosbots', 1)]
 
 
-def test_engine_prints_nothing(capfd):
-    with empty_world() as world:
-        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.run(100)
-        world.reset_simulation()
-        world.run(100)
+def test_engine_prints_nothing(world, capfd):
+    world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.run(100)
+    world.reset_simulation()
+    world.run(100)
     result = capfd.readouterr()
     assert 'b3' not in result.out + result.err
     assert 'pybullet' not in result.out + result.err

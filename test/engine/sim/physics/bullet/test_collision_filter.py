@@ -1,7 +1,7 @@
 """The collision filter covers its links as long as they exist, and no others."""
 
 import pytest
-from support import box_urdf, empty_world, urdf_spec
+from support import box_urdf, urdf_spec
 
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
@@ -27,40 +27,37 @@ def box():
     return urdf_spec(box_urdf('1 1 1', 1.0))
 
 
-def test_unconnected_links_of_a_model_do_not_collide():
-    with empty_world() as world:
-        pile = world.spawn(loose_links(), 'pile', Pose())
-        world.run(SECOND)
-        for link in pile.links.values():
-            assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
+def test_unconnected_links_of_a_model_do_not_collide(world):
+    pile = world.spawn(loose_links(), 'pile', Pose())
+    world.run(SECOND)
+    for link in pile.links.values():
+        assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
 @pytest.mark.parametrize('static', [False, True])
-def test_models_spawned_after_unconnected_links_collide(static):
+def test_models_spawned_after_unconnected_links_collide(world, static):
     # PyBullet reuses the ids of the links for the boxes.
     base = urdf_spec(box_urdf('1 1 1', 1.0, '<gazebo><static>true</static></gazebo>' * static))
-    with empty_world() as world:
-        world.spawn(loose_links(), 'pile', Pose())
-        world.delete('pile')
-        world.spawn(base, 'base', Pose((0.0, 0.0, 0.5)))
-        load = world.spawn(box(), 'load', Pose((0.0, 0.0, 1.6)))
-        world.run(SECOND)
-        assert load.pose.position[2] == pytest.approx(1.5, abs=0.01)
+    world.spawn(loose_links(), 'pile', Pose())
+    world.delete('pile')
+    world.spawn(base, 'base', Pose((0.0, 0.0, 0.5)))
+    load = world.spawn(box(), 'load', Pose((0.0, 0.0, 1.6)))
+    world.run(SECOND)
+    assert load.pose.position[2] == pytest.approx(1.5, abs=0.01)
 
 
-def test_unconnected_links_do_not_collide_after_a_deletion():
-    with empty_world() as world:
-        world.spawn(box(), 'gone', Pose((5.0, 0.0, 0.5)))
-        pile = world.spawn(loose_links(), 'pile', Pose())
-        world.delete('gone')
-        world.spawn(box(), 'new', Pose((5.0, 0.0, 0.5)))
-        world.reset_simulation()
-        world.run(SECOND)
-        for link in pile.links.values():
-            assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
+def test_unconnected_links_do_not_collide_after_a_deletion(world):
+    world.spawn(box(), 'gone', Pose((5.0, 0.0, 0.5)))
+    pile = world.spawn(loose_links(), 'pile', Pose())
+    world.delete('gone')
+    world.spawn(box(), 'new', Pose((5.0, 0.0, 0.5)))
+    world.reset_simulation()
+    world.run(SECOND)
+    for link in pile.links.values():
+        assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_static_model_may_have_several_surfaces():
+def test_static_model_may_have_several_surfaces(world):
     floor = (
         box_urdf('4 4 0.2', 1.0)
         + """
@@ -70,18 +67,17 @@ def test_static_model_may_have_several_surfaces():
       <gazebo reference="ice"><mu1>0</mu1><mu2>0</mu2></gazebo>
       <gazebo><static>true</static></gazebo>"""
     )
-    with empty_world() as world:
-        world.spawn(urdf_spec(floor), 'floor', Pose((0.0, 0.0, 1.0)))
-        places = {'rough': 0.0, 'smooth': 4.0}
-        ways = {}
-        for name, x in places.items():
-            load = world.spawn(box(), name, Pose((x, 0.0, 1.6)))
-            load.set_twist(Twist((0.0, 1.0, 0.0), (0.0, 0.0, 0.0)))
-            world.run(SECOND)
-            assert load.pose.position[2] == pytest.approx(1.6, abs=0.01)
-            ways[name] = load.pose.position[1]
-        assert ways['rough'] < 0.2
-        assert ways['smooth'] == pytest.approx(1.0, abs=0.05)
+    world.spawn(urdf_spec(floor), 'floor', Pose((0.0, 0.0, 1.0)))
+    places = {'rough': 0.0, 'smooth': 4.0}
+    ways = {}
+    for name, x in places.items():
+        load = world.spawn(box(), name, Pose((x, 0.0, 1.6)))
+        load.set_twist(Twist((0.0, 1.0, 0.0), (0.0, 0.0, 0.0)))
+        world.run(SECOND)
+        assert load.pose.position[2] == pytest.approx(1.6, abs=0.01)
+        ways[name] = load.pose.position[1]
+    assert ways['rough'] < 0.2
+    assert ways['smooth'] == pytest.approx(1.0, abs=0.05)
 
 
 SLIPPERY = '<surface><friction><ode><mu>{}</mu></ode></friction></surface>'
@@ -105,26 +101,24 @@ def sdf_model(*parts):
     return load_sdf(text, 'm', source='test', find_model=lambda _: None)[0]
 
 
-def test_unconnected_links_do_not_collide_with_any_of_their_surfaces():
-    with empty_world() as world:
-        low, high = two_faced('low', '0 0 0.5'), two_faced('high', '0 0 2')
-        pile = world.spawn(sdf_model(low, high), 'm', Pose())
-        world.run(SECOND)
-        for link in pile.links.values():
-            assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
+def test_unconnected_links_do_not_collide_with_any_of_their_surfaces(world):
+    low, high = two_faced('low', '0 0 0.5'), two_faced('high', '0 0 2')
+    pile = world.spawn(sdf_model(low, high), 'm', Pose())
+    world.run(SECOND)
+    for link in pile.links.values():
+        assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_links_of_a_joint_do_not_collide_with_any_of_their_surfaces():
+def test_links_of_a_joint_do_not_collide_with_any_of_their_surfaces(world):
     # They overlap on one side; a contact would turn the hinge.
     hinge = """<joint name="hinge" type="revolute"><parent>post</parent><child>arm</child>
       <axis><xyz>1 0 0</xyz></axis></joint>"""
     third = [('third', 0.0, 0.5)]
-    with empty_world() as world:
-        post, arm = two_faced('post', '0 0 0.5', third, 1), two_faced('arm', '0 0.3 0.8', third, 1)
-        model = world.spawn(sdf_model(post, arm, hinge), 'm', Pose())
-        world.run(300)
-        assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
-        assert abs(model.joint('hinge').velocity) < 0.01
+    post, arm = two_faced('post', '0 0 0.5', third, 1), two_faced('arm', '0 0.3 0.8', third, 1)
+    model = world.spawn(sdf_model(post, arm, hinge), 'm', Pose())
+    world.run(300)
+    assert model.links['post'].pose.position == pytest.approx((0.0, 0.0, 0.5), abs=0.01)
+    assert abs(model.joint('hinge').velocity) < 0.01
 
 
 def masked(collide, category='', shape='<box><size>1 1 1</size></box>'):
@@ -152,35 +146,32 @@ def masked(collide, category='', shape='<box><size>1 1 1</size></box>'):
         (('0x04', '0x02'), ('0x02', '0x01'), True),  # one direction is enough
     ],
 )
-def test_bitmasks_decide_whether_two_models_collide(lower, upper, meet):
-    with empty_world() as world:
-        world.spawn(masked(*lower), 'lower', Pose((0.0, 0.0, 0.5)))
-        high = world.spawn(masked(*upper), 'upper', Pose((0.0, 0.0, 1.51)))
-        world.run(300)
-        assert (high.pose.position[2] > 1.4) == meet
+def test_bitmasks_decide_whether_two_models_collide(world, lower, upper, meet):
+    world.spawn(masked(*lower), 'lower', Pose((0.0, 0.0, 0.5)))
+    high = world.spawn(masked(*upper), 'upper', Pose((0.0, 0.0, 1.51)))
+    world.run(300)
+    assert (high.pose.position[2] > 1.4) == meet
 
 
-def test_a_shape_that_collides_with_nothing_falls_through_the_ground_and_is_replaced():
-    with empty_world() as world:
-        ghost = world.spawn(masked('0'), 'ghost', Pose((0.0, 0.0, 0.6)))
-        world.run(600)
-        assert ghost.pose.position[2] < -0.5
-        world.delete('ghost')
-        solid = world.spawn(box(), 'solid', Pose((0.0, 0.0, 0.6)))  # with the ghost's number
-        world.run(SECOND)
-        assert solid.pose.position[2] == pytest.approx(0.5, abs=0.01)
+def test_a_shape_that_collides_with_nothing_falls_through_the_ground_and_is_replaced(world):
+    ghost = world.spawn(masked('0'), 'ghost', Pose((0.0, 0.0, 0.6)))
+    world.run(600)
+    assert ghost.pose.position[2] < -0.5
+    world.delete('ghost')
+    solid = world.spawn(box(), 'solid', Pose((0.0, 0.0, 0.6)))  # with the ghost's number
+    world.run(SECOND)
+    assert solid.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_bitmasks_hold_after_the_world_has_been_rebuilt():
-    with empty_world() as world:
-        world.spawn(masked('0x01'), 'lower', Pose((0.0, 0.0, 0.5)))
-        high = world.spawn(masked('0x02'), 'upper', Pose((0.0, 0.0, 1.51)))
-        world.reset_simulation()
-        world.run(SECOND)
-        assert high.pose.position[2] == pytest.approx(0.5, abs=0.01)
+def test_bitmasks_hold_after_the_world_has_been_rebuilt(world):
+    world.spawn(masked('0x01'), 'lower', Pose((0.0, 0.0, 0.5)))
+    high = world.spawn(masked('0x02'), 'upper', Pose((0.0, 0.0, 1.51)))
+    world.reset_simulation()
+    world.run(SECOND)
+    assert high.pose.position[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_collisions_of_one_link_have_their_own_bitmasks():
+def test_collisions_of_one_link_have_their_own_bitmasks(world):
     # The left end is held up, the rest passes through the ground: the plank tips over.
     parts = ''.join(
         f'<collision name="{name}"><pose>{x} 0 0 0 0 0</pose><geometry><box><size>{long} 1 0.2'
@@ -188,9 +179,6 @@ def test_collisions_of_one_link_have_their_own_bitmasks():
         '</surface></collision>'
         for name, x, long, mask in (('left', -0.4, 0.2, 1), ('right', 0.1, 0.8, 0))
     )
-    with empty_world() as world:
-        plank = world.spawn(
-            sdf_model(f'<link name="l">{parts}</link>'), 'm', Pose((0.0, 0.0, 0.11))
-        )
-        world.run(SECOND)
-        assert abs(plank.pose.orientation[1]) > 0.2
+    plank = world.spawn(sdf_model(f'<link name="l">{parts}</link>'), 'm', Pose((0.0, 0.0, 0.11)))
+    world.run(SECOND)
+    assert abs(plank.pose.orientation[1]) > 0.2

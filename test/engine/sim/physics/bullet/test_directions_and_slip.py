@@ -64,19 +64,18 @@ def test_mu_acts_along_fdir1():
 
 @pytest.mark.parametrize('yaw', [0.0, math.pi / 2.0])
 @pytest.mark.parametrize(('slip1', 'slip2', 'speed'), [(0.0, 0.05, 0.1), (0.2, 0.02, 0.04)])
-def test_slip_velocity_is_slip_times_force(slip1, slip2, speed, yaw):
+def test_slip_velocity_is_slip_times_force(world, slip1, slip2, speed, yaw):
     surface = friction(1, 1, f'<slip1>{slip1}</slip1><slip2>{slip2}</slip2>')
-    with empty_world() as world:
-        model = world.spawn(box(surface), 'box', Pose((0.0, 0.0, 0.1), from_rpy(0.0, 0.0, yaw)))
-        for _ in range(1500):
-            force = (2.0 * math.cos(yaw), 2.0 * math.sin(yaw), 0.0)
-            model.links['l'].apply_wrench(force, (0.0, 0.0, 0.0))
-            world.run(1)
-        assert math.hypot(*model.twist.linear[:2]) == pytest.approx(speed, rel=BOX_SHARE)
+    model = world.spawn(box(surface), 'box', Pose((0.0, 0.0, 0.1), from_rpy(0.0, 0.0, yaw)))
+    for _ in range(1500):
+        force = (2.0 * math.cos(yaw), 2.0 * math.sin(yaw), 0.0)
+        model.links['l'].apply_wrench(force, (0.0, 0.0, 0.0))
+        world.run(1)
+    assert math.hypot(*model.twist.linear[:2]) == pytest.approx(speed, rel=BOX_SHARE)
 
 
 @pytest.mark.parametrize('slab_comes', ['first', 'second'])
-def test_slip_on_a_slab_does_not_depend_on_the_order_of_spawns(slab_comes):
+def test_slip_on_a_slab_does_not_depend_on_the_order_of_spawns(world, slab_comes):
     spawns = [
         (box('', '4 4 0.1', '<static>1</static>'), 'slab', Pose((0.0, 0.0, 0.05))),
         (
@@ -85,14 +84,13 @@ def test_slip_on_a_slab_does_not_depend_on_the_order_of_spawns(slab_comes):
             Pose((0.0, 0.0, 0.2)),
         ),
     ]
-    with empty_world() as world:
-        for spawn in spawns if slab_comes == 'first' else reversed(spawns):
-            world.spawn(*spawn)
-        model = world.models['box']
-        for _ in range(1500):
-            model.links['l'].apply_wrench((2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-            world.run(1)
-        assert model.twist.linear[0] == pytest.approx(0.04, rel=BOX_SHARE)
+    for spawn in spawns if slab_comes == 'first' else reversed(spawns):
+        world.spawn(*spawn)
+    model = world.models['box']
+    for _ in range(1500):
+        model.links['l'].apply_wrench((2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        world.run(1)
+    assert model.twist.linear[0] == pytest.approx(0.04, rel=BOX_SHARE)
 
 
 def bounce(restitution, max_vel):

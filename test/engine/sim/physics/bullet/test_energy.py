@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import box_urdf, empty_world, robot_spec, urdf_spec
+from support import box_urdf, robot_spec, urdf_spec
 
 from rosbots_description.sim.core.transforms import (
     UP,
@@ -177,7 +177,7 @@ def test_single_pendulum_keeps_its_amplitude():
     assert max(map(abs, changes)) < 0.005 * GRAVITY
 
 
-def test_thrown_chain_gains_no_speed():
+def test_thrown_chain_gains_no_speed(world):
     spec = chain(30, 0.1, hangs=False)
     links = tuple(
         LinkSpec(
@@ -188,22 +188,20 @@ def test_thrown_chain_gains_no_speed():
         )
         for link in spec.links
     )
-    with empty_world() as world:
-        model = world.spawn(ModelSpec('chain', links, spec.joints), 'chain', Pose((0, 0, 2.0)))
-        model.set_twist(Twist((0.0, 0.0, 3.0), (1.0, 8.0, 0.0)))
-        start = energies(model)[0]
-        for _ in range(40):
-            world.run(100)
-            assert energies(model)[0] < 1.02 * start
+    model = world.spawn(ModelSpec('chain', links, spec.joints), 'chain', Pose((0, 0, 2.0)))
+    model.set_twist(Twist((0.0, 0.0, 3.0), (1.0, 8.0, 0.0)))
+    start = energies(model)[0]
+    for _ in range(40):
+        world.run(100)
+        assert energies(model)[0] < 1.02 * start
 
 
-def test_motor_may_add_energy_to_its_load():
+def test_motor_may_add_energy_to_its_load(world):
     arm = chain(2, 0.5)
-    with empty_world() as world:
-        model = world.spawn(arm, 'arm', Pose((0.0, 0.0, 5.0)))
-        model.joint('joint0').set_motor(20.0, 200.0)
-        world.run(2 * SECOND)
-        assert model.joint('joint0').velocity == pytest.approx(20.0, rel=0.05)
+    model = world.spawn(arm, 'arm', Pose((0.0, 0.0, 5.0)))
+    model.joint('joint0').set_motor(20.0, 200.0)
+    world.run(2 * SECOND)
+    assert model.joint('joint0').velocity == pytest.approx(20.0, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -216,15 +214,14 @@ def test_motor_may_add_energy_to_its_load():
         ((0.4, 0.4, 0.1), 20.0, 1.5, 5.0),
     ],
 )
-def test_box_spinning_about_the_vertical_lands_flat(size, speed, height, inertia):
+def test_box_spinning_about_the_vertical_lands_flat(world, size, speed, height, inertia):
     x, y, z = (inertia * length**2 / 12.0 for length in size)
     text = box_urdf(' '.join(map(str, size)), 1.0).replace(
         'ixx="0.1" iyy="0.1" izz="0.1"', f'ixx="{y + z}" iyy="{x + z}" izz="{x + y}"'
     )
-    with empty_world() as world:
-        box = world.spawn(urdf_spec(text), 'box', Pose((0.0, 0.0, height)))
-        box.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, speed)))
-        for _ in range(2 * SECOND):
-            world.run(1)
-            assert rotate(box.pose.orientation, UP)[2] > math.cos(0.02)
-        assert box.pose.position[2] == pytest.approx(size[2] / 2.0, abs=1e-3)
+    box = world.spawn(urdf_spec(text), 'box', Pose((0.0, 0.0, height)))
+    box.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, speed)))
+    for _ in range(2 * SECOND):
+        world.run(1)
+        assert rotate(box.pose.orientation, UP)[2] > math.cos(0.02)
+    assert box.pose.position[2] == pytest.approx(size[2] / 2.0, abs=1e-3)

@@ -72,29 +72,27 @@ def test_sliding_friction_is_that_of_the_lesser_mu(mu_box, mu_ramp, mu):
         (True, 0.2, 1.0),
     ],
 )
-def test_friction_on_the_diagonal_is_that_of_pyramid_or_cone(cone, mu, speed):
+def test_friction_on_the_diagonal_is_that_of_pyramid_or_cone(world, cone, mu, speed):
     along = math.sqrt(0.5) * speed
-    with empty_world() as world:
-        world.set_physics(replace(world.physics, friction_cone=cone))
-        box = world.spawn(rough(mu, '0.6 0.6 0.05'), 'box', Pose((0.0, 0.0, 0.025)))
-        box.set_twist(Twist((along, along, 0.0), (0.0, 0.0, 0.0)))
-        world.run(2 * SECOND)
-        x, y, _ = box.pose.position
+    world.set_physics(replace(world.physics, friction_cone=cone))
+    box = world.spawn(rough(mu, '0.6 0.6 0.05'), 'box', Pose((0.0, 0.0, 0.025)))
+    box.set_twist(Twist((along, along, 0.0), (0.0, 0.0, 0.0)))
+    world.run(2 * SECOND)
+    x, y, _ = box.pose.position
     braked = GRAVITY * mu * (math.sqrt(0.5) if cone else 1.0)  # along each axis [m/s^2]
     assert (x, y) == pytest.approx((along**2 / (2.0 * braked),) * 2, rel=0.03)
 
 
 @pytest.mark.parametrize('mu', [2.0, 10.0, 100.0, 1e6])
-def test_high_friction_resists_a_strong_push(mu):
-    with empty_world() as world:
-        box = world.spawn(rough(mu, '0.6 0.6 0.05', 2.0), 'box', Pose((0.0, 0.0, 0.025)))
-        world.run(200)
-        start = box.pose.position
-        for _ in range(SECOND):
-            box.links['box'].apply_wrench((1.4 * 2.0 * GRAVITY, 0.0, 0.0), (0.0, 0.0, 0.0))
-            world.run(1)
-        assert math.dist(box.pose.position, start) < 1e-3
-        assert abs(acceleration_down(math.radians(55.0), mu, mu)) < 1e-3
+def test_high_friction_resists_a_strong_push(world, mu):
+    box = world.spawn(rough(mu, '0.6 0.6 0.05', 2.0), 'box', Pose((0.0, 0.0, 0.025)))
+    world.run(200)
+    start = box.pose.position
+    for _ in range(SECOND):
+        box.links['box'].apply_wrench((1.4 * 2.0 * GRAVITY, 0.0, 0.0), (0.0, 0.0, 0.0))
+        world.run(1)
+    assert math.dist(box.pose.position, start) < 1e-3
+    assert abs(acceleration_down(math.radians(55.0), mu, mu)) < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -109,55 +107,50 @@ def test_high_friction_resists_a_strong_push(mu):
         (100.0, 1.0, 1.0),
     ],
 )
-def test_friction_between_movable_boxes_is_that_of_the_lesser_mu(mu_low, mu_high, mu):
-    with empty_world() as world:
-        low = world.spawn(rough(mu_low, '8 2 0.1', 20.0), 'low', Pose((0.0, 0.0, 0.05)))
-        high = world.spawn(rough(mu_high), 'high', Pose((0.0, 0.0, 0.15)))
-        world.run(300)
-        for force, steps in ((0.9 * mu * GRAVITY, 300), (1.5 * mu * GRAVITY, 500)):
-            before = high.twist.linear[0] - low.twist.linear[0]
-            for _ in range(steps):
-                high.links['box'].apply_wrench((force, 0.0, 0.0), (0.0, 0.0, 0.0))
-                world.run(1)
-            gained = high.twist.linear[0] - low.twist.linear[0] - before
-            slides = max(0.0, force - mu * GRAVITY) * steps / SECOND
-            assert gained == pytest.approx(slides, rel=0.05, abs=2e-3)
-
-
-def test_slippery_floor_applies_to_models_spawned_later():
-    with empty_world() as world:
-        ground = world.models['ground_plane'].spec
-        (link,) = ground.links
-        (collision,) = link.collisions
-        surface = replace(collision.surface, mu=0.2, mu2=0.2)
-        link = replace(link, collisions=(replace(collision, surface=surface),))
-        world.delete('ground_plane')
-        boxes = [world.spawn(rough(0.3), 'early', Pose((0.0, 0.0, 0.05)))]
-        world.spawn(replace(ground, links=(link,)), 'ground_plane', Pose())
-        boxes += [
-            world.spawn(rough(mu), f'box{mu}', Pose((0.0, 2.0 + mu, 0.05))) for mu in (1.0, 5.0)
-        ]
-        boxes.append(world.spawn(urdf_spec(ball('ball', 0.05, 1.0)), 'ball', Pose((0, -2, 0.05))))
-        for _ in range(SECOND):
-            for box in boxes[:3]:
-                box.links['box'].apply_wrench((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+def test_friction_between_movable_boxes_is_that_of_the_lesser_mu(world, mu_low, mu_high, mu):
+    low = world.spawn(rough(mu_low, '8 2 0.1', 20.0), 'low', Pose((0.0, 0.0, 0.05)))
+    high = world.spawn(rough(mu_high), 'high', Pose((0.0, 0.0, 0.15)))
+    world.run(300)
+    for force, steps in ((0.9 * mu * GRAVITY, 300), (1.5 * mu * GRAVITY, 500)):
+        before = high.twist.linear[0] - low.twist.linear[0]
+        for _ in range(steps):
+            high.links['box'].apply_wrench((force, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.run(1)
+        gained = high.twist.linear[0] - low.twist.linear[0] - before
+        slides = max(0.0, force - mu * GRAVITY) * steps / SECOND
+        assert gained == pytest.approx(slides, rel=0.05, abs=2e-3)
+
+
+def test_slippery_floor_applies_to_models_spawned_later(world):
+    ground = world.models['ground_plane'].spec
+    (link,) = ground.links
+    (collision,) = link.collisions
+    surface = replace(collision.surface, mu=0.2, mu2=0.2)
+    link = replace(link, collisions=(replace(collision, surface=surface),))
+    world.delete('ground_plane')
+    boxes = [world.spawn(rough(0.3), 'early', Pose((0.0, 0.0, 0.05)))]
+    world.spawn(replace(ground, links=(link,)), 'ground_plane', Pose())
+    boxes += [world.spawn(rough(mu), f'box{mu}', Pose((0.0, 2.0 + mu, 0.05))) for mu in (1.0, 5.0)]
+    boxes.append(world.spawn(urdf_spec(ball('ball', 0.05, 1.0)), 'ball', Pose((0, -2, 0.05))))
+    for _ in range(SECOND):
         for box in boxes[:3]:
-            assert box.twist.linear[0] == pytest.approx(3.0 - 0.2 * GRAVITY, rel=0.02)
-        assert boxes[3].pose.position[2] == pytest.approx(0.05, abs=1e-3)
+            box.links['box'].apply_wrench((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        world.run(1)
+    for box in boxes[:3]:
+        assert box.twist.linear[0] == pytest.approx(3.0 - 0.2 * GRAVITY, rel=0.02)
+    assert boxes[3].pose.position[2] == pytest.approx(0.05, abs=1e-3)
 
 
-def test_a_slippery_floor_can_be_moved():
-    with empty_world() as world:
-        bed = world.spawn(rough(0.4, '2 2 0.2', static=True), 'bed', Pose((9.0, 0.0, 1.0)))
-        bed.set_pose(Pose((0.0, 0.0, 3.0)))
-        for mu, x in ((0.2, -0.6), (1.0, 0.6)):
-            box = world.spawn(rough(mu), f'box{mu}', Pose((x, 0.0, 3.2)))
-            world.run(500)
-            assert box.pose.position[2] == pytest.approx(3.15, abs=1e-3)
+def test_a_slippery_floor_can_be_moved(world):
+    bed = world.spawn(rough(0.4, '2 2 0.2', static=True), 'bed', Pose((9.0, 0.0, 1.0)))
+    bed.set_pose(Pose((0.0, 0.0, 3.0)))
+    for mu, x in ((0.2, -0.6), (1.0, 0.6)):
+        box = world.spawn(rough(mu), f'box{mu}', Pose((x, 0.0, 3.2)))
+        world.run(500)
+        assert box.pose.position[2] == pytest.approx(3.15, abs=1e-3)
 
 
-def test_robot_of_many_slippery_links_moves():
+def test_robot_of_many_slippery_links_moves(world):
     link = """<link name="l{0}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0"
       ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.1"/></geometry></collision>
       </link><gazebo reference="l{0}"><mu1>0.5</mu1></gazebo>"""
@@ -165,10 +158,9 @@ def test_robot_of_many_slippery_links_moves():
       <origin xyz="0 {0} 0"/></joint>"""
     text = ''.join(link.format(i) for i in range(80))
     text += ''.join(joint.format(i) for i in range(1, 80))
-    with empty_world() as world:
-        model = world.spawn(urdf_spec(text), 'rake', Pose((0.0, 0.0, 0.1)))
-        world.run(200)
-        assert model.pose.position[2] == pytest.approx(0.1, abs=1e-3)
+    model = world.spawn(urdf_spec(text), 'rake', Pose((0.0, 0.0, 0.1)))
+    world.run(200)
+    assert model.pose.position[2] == pytest.approx(0.1, abs=1e-3)
 
 
 def test_surfaces_beyond_the_number_of_collision_groups_still_collide():
@@ -183,16 +175,15 @@ def test_surfaces_beyond_the_number_of_collision_groups_still_collide():
         assert max(group, mask) < 1 << 31
 
 
-def test_surface_of_mu_1_is_one_contact_part_and_others_are_two():
-    with empty_world() as world:
-        for mu, parts in ((1.0, 1), (0.5, 2), (3.0, 2)):
-            box = world.spawn(rough(mu), f'box{mu}', Pose((0.0, mu, 0.05)))
-            assert len(box.body.surfaces['box']) == parts
-        world.run(100)
-        client = world.engine._client
-        touching = [
-            len(pybullet.getContactPoints(model.body.bodies[0], physicsClientId=client))
-            for name, model in world.models.items()
-            if name != 'ground_plane'
-        ]
-        assert touching == [4, 4, 4]
+def test_surface_of_mu_1_is_one_contact_part_and_others_are_two(world):
+    for mu, parts in ((1.0, 1), (0.5, 2), (3.0, 2)):
+        box = world.spawn(rough(mu), f'box{mu}', Pose((0.0, mu, 0.05)))
+        assert len(box.body.surfaces['box']) == parts
+    world.run(100)
+    client = world.engine._client
+    touching = [
+        len(pybullet.getContactPoints(model.body.bodies[0], physicsClientId=client))
+        for name, model in world.models.items()
+        if name != 'ground_plane'
+    ]
+    assert touching == [4, 4, 4]

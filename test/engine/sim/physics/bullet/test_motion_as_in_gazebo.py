@@ -5,7 +5,7 @@ import re
 from functools import cache
 
 import pytest
-from support import SETTLED, SPAWN_POSE, empty_world, robot_spec
+from support import SETTLED, SPAWN_POSE, robot_spec
 from support.converged import converged_world, mechanics
 from support.mechanics import DRIVES as MECHANICAL
 from support.motion import (
@@ -98,26 +98,24 @@ def test_acceleration_and_braking_follow_gazebos_ramp():
     assert max(map(abs, delays)) <= RAMP_TOLERANCE
 
 
-def test_standing_robot_does_not_creep_or_vibrate():
-    with empty_world() as world:
-        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.run(SETTLED)
-        before = model.pose.position
-        assert before[2] == pytest.approx(REST_HEIGHT[0], abs=REST_HEIGHT[1])
-        for _ in range(30_000 // 37):
-            world.run(37)  # no divisor of the plugin's period
-            twist = model.twist
-            assert max(map(abs, (*twist.linear, *twist.angular))) < RESIDUAL_SPEED
-        assert math.dist(before, model.pose.position) < IDLE_CREEP
+def test_standing_robot_does_not_creep_or_vibrate(world):
+    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    world.run(SETTLED)
+    before = model.pose.position
+    assert before[2] == pytest.approx(REST_HEIGHT[0], abs=REST_HEIGHT[1])
+    for _ in range(30_000 // 37):
+        world.run(37)  # no divisor of the plugin's period
+        twist = model.twist
+        assert max(map(abs, (*twist.linear, *twist.angular))) < RESIDUAL_SPEED
+    assert math.dist(before, model.pose.position) < IDLE_CREEP
 
 
-def test_the_fall_takes_as_long_as_in_gazebo():
-    with empty_world() as world:
-        model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        steps = 0
-        while model.pose.position[2] > REST_HEIGHT[0]:
-            world.run(1)
-            steps += 1
-        assert steps * 0.001 == pytest.approx(0.355, abs=0.003)
-        world.run(20)
-        assert abs(model.twist.linear[2]) < 0.02  # it does not bounce
+def test_the_fall_takes_as_long_as_in_gazebo(world):
+    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+    steps = 0
+    while model.pose.position[2] > REST_HEIGHT[0]:
+        world.run(1)
+        steps += 1
+    assert steps * 0.001 == pytest.approx(0.355, abs=0.003)
+    world.run(20)
+    assert abs(model.twist.linear[2]) < 0.02  # it does not bounce

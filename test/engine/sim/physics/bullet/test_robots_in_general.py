@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from support import empty_world, urdf_spec
+from support import urdf_spec
 from support.scenes import SCENES, SPEED, box, castered, drive, forward_speed, link
 
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy, yaw_of
@@ -51,26 +51,24 @@ def test_skid_steer_turns_with_slipping_wheels():
     assert least < SCENES['skid steer turns']() < most
 
 
-def test_robot_on_two_casters_drives_on_a_box_as_floor():
-    with empty_world() as world:
-        world.delete('ground_plane')
-        slab = replace(urdf_spec(box('slab', (40.0, 40.0, 1.0), 1.0)), static=True)
-        world.spawn(slab, 'slab', Pose((0.0, 0.0, -0.5)))
-        model = drive(world, castered(), 4, 0.4)
-        assert yaw_of(model.pose.orientation) == pytest.approx(0.4, abs=0.1)
-        assert forward_speed(model) == pytest.approx(SPEED, rel=0.01)
+def test_robot_on_two_casters_drives_on_a_box_as_floor(world):
+    world.delete('ground_plane')
+    slab = replace(urdf_spec(box('slab', (40.0, 40.0, 1.0), 1.0)), static=True)
+    world.spawn(slab, 'slab', Pose((0.0, 0.0, -0.5)))
+    model = drive(world, castered(), 4, 0.4)
+    assert yaw_of(model.pose.orientation) == pytest.approx(0.4, abs=0.1)
+    assert forward_speed(model) == pytest.approx(SPEED, rel=0.01)
 
 
-def test_pushed_can_rolls_and_stops_slowly():
+def test_pushed_can_rolls_and_stops_slowly(world):
     can = urdf_spec(link('can', '<cylinder radius="0.1" length="0.2"/>', 1.0, (6e-3, 6e-3, 5e-3)))
-    with empty_world() as world:
-        model = world.spawn(can, 'can', Pose((0.0, 0.0, 0.1), from_rpy(math.pi / 2.0, 0.0, 0.0)))
-        world.run(100)
-        model.set_twist(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
-        speeds = []
-        for _ in range(3):
-            world.run(1000)
-            speeds.append(model.twist.linear[0])
+    model = world.spawn(can, 'can', Pose((0.0, 0.0, 0.1), from_rpy(math.pi / 2.0, 0.0, 0.0)))
+    world.run(100)
+    model.set_twist(Twist((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    speeds = []
+    for _ in range(3):
+        world.run(1000)
+        speeds.append(model.twist.linear[0])
     first, second, third = speeds
     assert 0.6 < first < 2.0 / 3.0
     assert 0.02 < first - second < 0.05

@@ -45,12 +45,6 @@ def spec(request):
     return robot(request.param)
 
 
-@pytest.fixture
-def world():
-    with empty_world() as made:
-        yield made
-
-
 def corners(model):
     """Return the corners of the plates in the world frame [m]."""
     return [compose(model.pose, Pose(corner)).position for corner in CORNERS]

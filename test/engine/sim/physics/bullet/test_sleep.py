@@ -156,28 +156,26 @@ def test_wakes_in_time(waker, busy):
     assert max(changes) > 0.01, 'the cause has an effect'
 
 
-def test_stands_still_to_the_last_bit():
-    with empty_world() as world:
-        furnish(world)
-        world.run(ASLEEP)
-        before = states(world)
-        contacts = world.engine.contacts(world.models['top'].body)
-        world.run(1000)
-        assert states(world) == before
-        assert world.engine.contacts(world.models['top'].body) == contacts
-        weight = sum(contact.force[2] for contact in contacts)
-        assert weight == pytest.approx(9.8, rel=0.01), 'its contacts are reported, with the load'
+def test_stands_still_to_the_last_bit(world):
+    furnish(world)
+    world.run(ASLEEP)
+    before = states(world)
+    contacts = world.engine.contacts(world.models['top'].body)
+    world.run(1000)
+    assert states(world) == before
+    assert world.engine.contacts(world.models['top'].body) == contacts
+    weight = sum(contact.force[2] for contact in contacts)
+    assert weight == pytest.approx(9.8, rel=0.01), 'its contacts are reported, with the load'
 
 
-def test_sleepers_beside_a_moving_one_report_their_contacts():
-    with empty_world() as world:
-        furnish(world)
-        world.models['alone'].set_twist(Twist((0.0, -1.0, 0.0)))
-        world.models['flywheel'].joints['axle'].set_motor(1.0, 5.0)
-        world.run(ASLEEP)
-        assert world.models['top'].twist == Twist()
-        contacts = world.engine.contacts(world.models['top'].body)
-        assert sum(contact.force[2] for contact in contacts) == pytest.approx(9.8, rel=0.01)
+def test_sleepers_beside_a_moving_one_report_their_contacts(world):
+    furnish(world)
+    world.models['alone'].set_twist(Twist((0.0, -1.0, 0.0)))
+    world.models['flywheel'].joints['axle'].set_motor(1.0, 5.0)
+    world.run(ASLEEP)
+    assert world.models['top'].twist == Twist()
+    contacts = world.engine.contacts(world.models['top'].body)
+    assert sum(contact.force[2] for contact in contacts) == pytest.approx(9.8, rel=0.01)
 
 
 @pytest.mark.parametrize('busy', [False, True], ids=['all asleep', 'some asleep'])
@@ -223,38 +221,35 @@ def test_a_robot_that_slept_starts_as_one_that_did_not():
 
 
 @pytest.mark.parametrize('busy', [False, True], ids=['all asleep', 'some asleep'])
-def test_a_reaction_is_measured_from_the_next_step_on(busy):
-    with empty_world() as world:
-        furnish(world)
-        if busy:
-            roll(world)
-        world.run(ASLEEP)
-        body = world.models['flywheel'].body
-        world.engine.measure_reaction(body, 'axle')
-        world.run(1)
-        assert world.engine.joint_reaction(body, 'axle').force[2] == pytest.approx(9.8, rel=0.01)
+def test_a_reaction_is_measured_from_the_next_step_on(world, busy):
+    furnish(world)
+    if busy:
+        roll(world)
+    world.run(ASLEEP)
+    body = world.models['flywheel'].body
+    world.engine.measure_reaction(body, 'axle')
+    world.run(1)
+    assert world.engine.joint_reaction(body, 'axle').force[2] == pytest.approx(9.8, rel=0.01)
 
 
-def test_joints_are_read_as_they_are_set_though_others_sleep():
-    with empty_world() as world:
-        furnish(world)
-        body = world.models['flywheel'].body
-        world.models['flywheel'].joints['axle'].set_motor(1.0, 5.0)
-        world.run(ASLEEP)
-        motion = world.engine.motion(body)
-        world.engine.set_motion(body, replace(motion, joints={'axle': (0.5, -2.0)}))
-        assert world.engine.joint_states(body)['axle'][:2] == (0.5, -2.0)
+def test_joints_are_read_as_they_are_set_though_others_sleep(world):
+    furnish(world)
+    body = world.models['flywheel'].body
+    world.models['flywheel'].joints['axle'].set_motor(1.0, 5.0)
+    world.run(ASLEEP)
+    motion = world.engine.motion(body)
+    world.engine.set_motion(body, replace(motion, joints={'axle': (0.5, -2.0)}))
+    assert world.engine.joint_states(body)['axle'][:2] == (0.5, -2.0)
 
 
-def test_motor_that_is_held_up_does_not_sleep():
-    with empty_world() as world:
-        furnish(world)
-        joint = world.models['slider'].joints['rail']
-        joint.set_motor(0.2, 5.0)  # less than its weight
-        world.run(ASLEEP)
-        joint.apply_effort(0.0)
-        world.run(1)
-        assert joint.effort == pytest.approx(5.0)
+def test_motor_that_is_held_up_does_not_sleep(world):
+    furnish(world)
+    joint = world.models['slider'].joints['rail']
+    joint.set_motor(0.2, 5.0)  # less than its weight
+    world.run(ASLEEP)
+    joint.apply_effort(0.0)
+    world.run(1)
+    assert joint.effort == pytest.approx(5.0)
 
 
 @pytest.mark.parametrize(

@@ -76,29 +76,28 @@ def pile(world, chance, boxes):
 
 
 @pytest.mark.parametrize(('seed', 'boxes', 'robots'), [(1, 0, 1), (2, 2, 1), (3, 8, 1), (4, 4, 3)])
-def test_continuation_from_a_snapshot_is_bit_identical(seed, boxes, robots):
+def test_continuation_from_a_snapshot_is_bit_identical(world, seed, boxes, robots):
     chance = random.Random(seed)
-    with empty_world() as world:
-        pile(world, chance, boxes)
-        for k in range(robots):
-            spec = robot_spec() if not k else castered()
-            world.spawn(spec, f'robot{k}', Pose((0.0, 1.2 * k, 0.5 - 0.35 * bool(k))))
-        world.spawn(urdf_spec(ARM), 'arm', Pose((0.5, 0.0, 3.5), from_rpy(0.1, 0.2, 0.3)))
-        for model in world.models.values():
-            for joint in model.joints.values():
-                joint.set_motor(5.0, 5.0)
-        world.engine.step(1777)
-        before = motion(world)
-        snapshot = world.engine.snapshot()
+    pile(world, chance, boxes)
+    for k in range(robots):
+        spec = robot_spec() if not k else castered()
+        world.spawn(spec, f'robot{k}', Pose((0.0, 1.2 * k, 0.5 - 0.35 * bool(k))))
+    world.spawn(urdf_spec(ARM), 'arm', Pose((0.5, 0.0, 3.5), from_rpy(0.1, 0.2, 0.3)))
+    for model in world.models.values():
+        for joint in model.joints.values():
+            joint.set_motor(5.0, 5.0)
+    world.engine.step(1777)
+    before = motion(world)
+    snapshot = world.engine.snapshot()
+    assert motion(world) == before
+    wanted = go_on(world)
+    for _ in range(2):
+        mix_up(world, chance)
+        world.engine.restore(snapshot)
         assert motion(world) == before
-        wanted = go_on(world)
-        for _ in range(2):
-            mix_up(world, chance)
-            world.engine.restore(snapshot)
-            assert motion(world) == before
-            found = go_on(world)
-            same = [a == b for a, b in zip(wanted, found, strict=True)]
-            assert all(same), f'differs from step {20 * same.index(False)}'
+        found = go_on(world)
+        same = [a == b for a, b in zip(wanted, found, strict=True)]
+        assert all(same), f'differs from step {20 * same.index(False)}'
 
 
 # PyBullet reorders the contact points of a body of several shapes, such as the robot.
@@ -122,54 +121,51 @@ def test_taking_a_snapshot_hardly_changes_the_motion(make_spec, tolerances):
             assert math.dist(*(model.pose.position for model in models)) <= tolerance  # [m]
 
 
-def test_continuation_is_bit_identical_with_spin_slip_forces_and_new_step_size():
-    with empty_world() as world:
-        arm = world.spawn(urdf_spec(ARM), 'arm', Pose((0.0, 0.0, 90.0)))
-        box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((3.0, 0.0, 0.1)))
-        arm.set_twist(Twist((0.0, 0.0, 9.0), (0.3, 20.0, 0.2)))
-        world.engine.step(333)
-        world.engine.set_slip_compliance(box.body, 'box', (1.0, 0.0, 0.0), (0.01, 0.02))
-        box.set_twist(Twist((0.5, 0.5, 0.0)))
-        world.engine.step(40)
-        box.links['box'].apply_wrench((0.0, 0.0, 30.0), (0.0, 0.0, 0.5))
-        arm.joints['j'].apply_effort(0.5)
-        snapshot = world.engine.snapshot()
-        wanted = go_on(world, 400)
-        for _ in range(2):
-            box.links['box'].apply_wrench((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-            world.engine.set_slip_compliance(box.body, 'box', (0.0, 1.0, 0.0), (1.0, 1.0))
-            world.set_physics(PhysicsSettings(step_size=0.002, gravity=(0.0, 0.0, -3.0)))
-            world.engine.step(50)
-            box.links['box'].apply_wrench((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-            world.engine.restore(snapshot)
-            assert go_on(world, 400) == wanted
-
-
-def test_static_model_is_restored_to_its_pose():
-    with empty_world() as world:
-        shelf = urdf_spec(box_urdf('1 1 0.2', 1.0, '<gazebo><static>true</static></gazebo>'))
-        stand = world.spawn(shelf, 'shelf', Pose((0.0, 0.0, 1.0)))
-        box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.2)))
-        world.engine.step(500)
-        snapshot = world.engine.snapshot()
-        wanted = go_on(world, 500)
-        stand.set_pose(Pose((5.0, 0.0, 1.0)))
-        world.engine.step(500)
-        assert box.pose.position[2] < 0.2
+def test_continuation_is_bit_identical_with_spin_slip_forces_and_new_step_size(world):
+    arm = world.spawn(urdf_spec(ARM), 'arm', Pose((0.0, 0.0, 90.0)))
+    box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((3.0, 0.0, 0.1)))
+    arm.set_twist(Twist((0.0, 0.0, 9.0), (0.3, 20.0, 0.2)))
+    world.engine.step(333)
+    world.engine.set_slip_compliance(box.body, 'box', (1.0, 0.0, 0.0), (0.01, 0.02))
+    box.set_twist(Twist((0.5, 0.5, 0.0)))
+    world.engine.step(40)
+    box.links['box'].apply_wrench((0.0, 0.0, 30.0), (0.0, 0.0, 0.5))
+    arm.joints['j'].apply_effort(0.5)
+    snapshot = world.engine.snapshot()
+    wanted = go_on(world, 400)
+    for _ in range(2):
+        box.links['box'].apply_wrench((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        world.engine.set_slip_compliance(box.body, 'box', (0.0, 1.0, 0.0), (1.0, 1.0))
+        world.set_physics(PhysicsSettings(step_size=0.002, gravity=(0.0, 0.0, -3.0)))
+        world.engine.step(50)
+        box.links['box'].apply_wrench((70.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         world.engine.restore(snapshot)
-        assert go_on(world, 500) == wanted
+        assert go_on(world, 400) == wanted
 
 
-def test_snapshot_of_other_models_is_rejected_with_a_message():
-    with empty_world() as world:
-        snapshot = world.engine.snapshot()
-        world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
-        with pytest.raises(SimError, match='of other models'):
-            world.engine.restore(snapshot)
-        later = world.engine.snapshot()
-        world.reset_simulation()
-        with pytest.raises(SimError, match='of other models'):
-            world.engine.restore(later)
+def test_static_model_is_restored_to_its_pose(world):
+    shelf = urdf_spec(box_urdf('1 1 0.2', 1.0, '<gazebo><static>true</static></gazebo>'))
+    stand = world.spawn(shelf, 'shelf', Pose((0.0, 0.0, 1.0)))
+    box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.2)))
+    world.engine.step(500)
+    snapshot = world.engine.snapshot()
+    wanted = go_on(world, 500)
+    stand.set_pose(Pose((5.0, 0.0, 1.0)))
+    world.engine.step(500)
+    assert box.pose.position[2] < 0.2
+    world.engine.restore(snapshot)
+    assert go_on(world, 500) == wanted
+
+
+def test_snapshot_of_other_models_is_rejected_with_a_message(world):
+    snapshot = world.engine.snapshot()
+    world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
+    with pytest.raises(SimError, match='of other models'):
+        world.engine.restore(snapshot)
+    later = world.engine.snapshot()
+    world.reset_simulation()
+    with pytest.raises(SimError, match='of other models'):
+        world.engine.restore(later)
 
 
 def test_reset_world_with_a_snapshot_moves_like_a_new_one():
@@ -185,7 +181,7 @@ def test_reset_world_with_a_snapshot_moves_like_a_new_one():
     assert found[0] == found[1]
 
 
-def test_unreferenced_snapshots_are_freed(monkeypatch):
+def test_unreferenced_snapshots_are_freed(world, monkeypatch):
     save, remove, saved = pybullet.saveState, pybullet.removeState, set()
 
     def recorded_save(**options):
@@ -198,12 +194,11 @@ def test_unreferenced_snapshots_are_freed(monkeypatch):
 
     monkeypatch.setattr(pybullet, 'saveState', recorded_save)
     monkeypatch.setattr(pybullet, 'removeState', recorded_remove)
-    with empty_world() as world:
-        for _ in range(20):
-            snapshot = world.engine.snapshot()
-        assert len(saved) == 1
-        del snapshot
-        assert not saved
+    for _ in range(20):
+        snapshot = world.engine.snapshot()
+    assert len(saved) == 1
+    del snapshot
+    assert not saved
 
 
 def test_restore_costs_as_much_as_some_steps():

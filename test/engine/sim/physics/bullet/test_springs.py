@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from support import empty_world, urdf_spec
+from support import urdf_spec
 from support.scenes import GRAVITY, box
 
 from rosbots_description.sim.core.transforms import Pose, Twist
@@ -150,50 +150,46 @@ def carriage(mass, stiffness, damping):
         (1.0, 300.0, 10.0),
     ],
 )
-def test_deflection_of_a_sprung_body_is_weight_over_stiffness(mass, stiffness, damping):
-    with empty_world() as world:
-        model = world.spawn(carriage(mass, stiffness, damping), 'carriage', Pose((0.0, 0.0, 0.17)))
-        world.run(4000)
-        sag = mass * GRAVITY / 4.0 / stiffness
-        assert model.joint('joint0').position == pytest.approx(sag, rel=0.01)
-        assert model.pose.position[2] == pytest.approx(0.15 - sag, abs=1e-3)
+def test_deflection_of_a_sprung_body_is_weight_over_stiffness(world, mass, stiffness, damping):
+    model = world.spawn(carriage(mass, stiffness, damping), 'carriage', Pose((0.0, 0.0, 0.17)))
+    world.run(4000)
+    sag = mass * GRAVITY / 4.0 / stiffness
+    assert model.joint('joint0').position == pytest.approx(sag, rel=0.01)
+    assert model.pose.position[2] == pytest.approx(0.15 - sag, abs=1e-3)
 
 
-def test_springs_too_stiff_for_the_step_size_are_at_rest_under_a_body():
-    with empty_world() as world:
-        model = world.spawn(carriage(8.0, 1e12, 0.0), 'carriage', Pose((0.0, 0.0, 0.17)))
-        world.run(3000)
-        assert model.pose.position[2] == pytest.approx(0.15, abs=2e-3)
-        for _ in range(200):
-            world.run(1)
-            assert max(abs(joint.velocity) for joint in model.joints.values()) < 1e-3
+def test_springs_too_stiff_for_the_step_size_are_at_rest_under_a_body(world):
+    model = world.spawn(carriage(8.0, 1e12, 0.0), 'carriage', Pose((0.0, 0.0, 0.17)))
+    world.run(3000)
+    assert model.pose.position[2] == pytest.approx(0.15, abs=2e-3)
+    for _ in range(200):
+        world.run(1)
+        assert max(abs(joint.velocity) for joint in model.joints.values()) < 1e-3
 
 
-def test_spring_acts_beside_efforts_and_motors_and_after_changes():
-    with empty_world() as world:
-        model = world.spawn(weight(1.0, stiffness=100.0, damping=5.0), 'weight', HIGH)
-        joint = model.joint('joint')
-        for _ in range(4000):
-            joint.apply_effort(20.0)
-            world.run(1)
-        assert joint.position == pytest.approx((20.0 - GRAVITY) / 100.0, rel=1e-3)
-        model.respecify(model.spec)
-        world.run(4000)
-        rest = -GRAVITY / 100.0
-        assert model.joint('joint').position == pytest.approx(rest, rel=1e-3)
-        model.joint('joint').set_motor(0.1, 3.0)  # drives against the spring until both balance
-        world.run(4000)
-        assert model.joint('joint').position == pytest.approx(rest + 0.03, rel=0.01)
+def test_spring_acts_beside_efforts_and_motors_and_after_changes(world):
+    model = world.spawn(weight(1.0, stiffness=100.0, damping=5.0), 'weight', HIGH)
+    joint = model.joint('joint')
+    for _ in range(4000):
+        joint.apply_effort(20.0)
+        world.run(1)
+    assert joint.position == pytest.approx((20.0 - GRAVITY) / 100.0, rel=1e-3)
+    model.respecify(model.spec)
+    world.run(4000)
+    rest = -GRAVITY / 100.0
+    assert model.joint('joint').position == pytest.approx(rest, rel=1e-3)
+    model.joint('joint').set_motor(0.1, 3.0)  # drives against the spring until both balance
+    world.run(4000)
+    assert model.joint('joint').position == pytest.approx(rest + 0.03, rel=0.01)
 
 
-def test_motion_after_a_reset_is_bit_identical():
-    with empty_world() as world:
-        model = world.spawn(weight(1.0, stiffness=100.0), 'weight', HIGH)
-        ways = []
-        for _ in range(2):
-            world.run(777)
-            ways.append(model.joint('joint').state())
-            world.reset_simulation()
-        assert ways[0] == ways[1]
-        world.delete('weight')
-        world.run(10)
+def test_motion_after_a_reset_is_bit_identical(world):
+    model = world.spawn(weight(1.0, stiffness=100.0), 'weight', HIGH)
+    ways = []
+    for _ in range(2):
+        world.run(777)
+        ways.append(model.joint('joint').state())
+        world.reset_simulation()
+    assert ways[0] == ways[1]
+    world.delete('weight')
+    world.run(10)

@@ -92,16 +92,15 @@ def turned(model, world, steps):
         (MIDDLE, 20.0, 0.0),
     ],
 )
-def test_robot_driving_across_a_slope_does_not_slide_down(spec, degrees, speed):
-    with empty_world() as world:
-        frame = tilted_floor(world, roll=degrees)
-        model = placed(world, spec, frame)
-        before = within(frame, model).position
-        command(model, speed, 0.0)
-        world.run(3000)
-        after = within(frame, model).position
-        assert abs(after[1] - before[1]) < 0.01 * 3.0
-        assert after[0] - before[0] > 0.7 * 3.0 * speed - 0.01
+def test_robot_driving_across_a_slope_does_not_slide_down(world, spec, degrees, speed):
+    frame = tilted_floor(world, roll=degrees)
+    model = placed(world, spec, frame)
+    before = within(frame, model).position
+    command(model, speed, 0.0)
+    world.run(3000)
+    after = within(frame, model).position
+    assert abs(after[1] - before[1]) < 0.01 * 3.0
+    assert after[0] - before[0] > 0.7 * 3.0 * speed - 0.01
 
 
 @pytest.mark.parametrize(
@@ -118,22 +117,21 @@ def test_robot_driving_across_a_slope_does_not_slide_down(spec, degrees, speed):
         (castered(5.0, 0.4, casters=1, acceleration=0.2), 25.0, 0.5, 0.8),
     ],
 )
-def test_tyres_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
+def test_tyres_on_a_slope_do_not_slip_sideways(world, spec, degrees, speed, heading):
     """Lateral slip along the axle; motor velocity error turns the robot slightly, without slip."""
-    with empty_world() as world:
-        model = placed(world, spec, tilted_floor(world, roll=degrees), heading)
-        command(model, speed, 0.0)
-        before = model.pose.orientation
-        slip = ahead = 0.0
-        for _ in range(3000):
-            world.run(1)
-            pose, twist = model.state()
-            along = rotate(conjugate(pose.orientation), twist.linear)
-            ahead, slip = ahead + 0.001 * along[0], slip + 0.001 * along[1]
-        assert abs(slip) < 0.002 * 3.0
-        assert ahead > 0.5 * 3.0 * speed
-        turn = compose(inverse(Pose(orientation=before)), Pose(orientation=pose.orientation))
-        assert abs(yaw_of(turn.orientation)) < 0.08
+    model = placed(world, spec, tilted_floor(world, roll=degrees), heading)
+    command(model, speed, 0.0)
+    before = model.pose.orientation
+    slip = ahead = 0.0
+    for _ in range(3000):
+        world.run(1)
+        pose, twist = model.state()
+        along = rotate(conjugate(pose.orientation), twist.linear)
+        ahead, slip = ahead + 0.001 * along[0], slip + 0.001 * along[1]
+    assert abs(slip) < 0.002 * 3.0
+    assert ahead > 0.5 * 3.0 * speed
+    turn = compose(inverse(Pose(orientation=before)), Pose(orientation=pose.orientation))
+    assert abs(yaw_of(turn.orientation)) < 0.08
 
 
 @pytest.mark.parametrize(
@@ -145,29 +143,27 @@ def test_tyres_on_a_slope_do_not_slip_sideways(spec, degrees, speed, heading):
         (MIDDLE, 10.0, 0.05),
     ],
 )
-def test_slow_robot_climbs_a_ramp_as_commanded_without_rolling_back(spec, degrees, speed):
-    with empty_world() as world:
-        frame = tilted_floor(world, pitch=-degrees)
-        model = placed(world, spec, frame)
-        command(model, speed, 0.0)
-        world.run(2000)
-        ways = []
-        for _ in range(40):
-            ways.append(within(frame, model).position[0])
-            world.run(100)
-        assert min(b - a for a, b in itertools.pairwise(ways)) > 0.0
-        assert (ways[-1] - ways[0]) / 3.9 == pytest.approx(speed, rel=0.05)
+def test_slow_robot_climbs_a_ramp_as_commanded_without_rolling_back(world, spec, degrees, speed):
+    frame = tilted_floor(world, pitch=-degrees)
+    model = placed(world, spec, frame)
+    command(model, speed, 0.0)
+    world.run(2000)
+    ways = []
+    for _ in range(40):
+        ways.append(within(frame, model).position[0])
+        world.run(100)
+    assert min(b - a for a, b in itertools.pairwise(ways)) > 0.0
+    assert (ways[-1] - ways[0]) / 3.9 == pytest.approx(speed, rel=0.05)
 
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE, HEAVY], ids=['1 kg', '5 kg', '50 kg'])
-def test_slow_commands_are_followed_on_level_ground(spec):
-    with empty_world() as world:
-        model = placed(world, spec)
-        command(model, 0.01, 0.0)
-        world.run(2000)
-        before = model.pose.position
-        world.run(4000)
-        assert math.dist(model.pose.position, before) / 4.0 == pytest.approx(0.01, rel=0.05)
+def test_slow_commands_are_followed_on_level_ground(world, spec):
+    model = placed(world, spec)
+    command(model, 0.01, 0.0)
+    world.run(2000)
+    before = model.pose.position
+    world.run(4000)
+    assert math.dist(model.pose.position, before) / 4.0 == pytest.approx(0.01, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -181,13 +177,12 @@ def test_slow_commands_are_followed_on_level_ground(spec):
         (castered(20.0, 0.6, casters=1), -0.1),
     ],
 )
-def test_slow_turns_are_followed(spec, rate):
+def test_slow_turns_are_followed(world, spec, rate):
     """Within what a wheel makes of it that turns about one of its outer crests: b / 2R, 6 %."""
-    with empty_world() as world:
-        model = placed(world, spec)
-        command(model, 0.0, rate)
-        world.run(3000)
-        assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.065)
+    model = placed(world, spec)
+    command(model, 0.0, rate)
+    world.run(3000)
+    assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.065)
 
 
 def share_turned(size, mu):
@@ -241,13 +236,12 @@ def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, m
         (castered(20.0, 0.6), 15.0, 0.4),
     ],
 )
-def test_a_parked_robot_does_not_creep(spec, degrees, yaw):
-    with empty_world() as world:
-        model = placed(world, spec, tilted_floor(world, pitch=-degrees), yaw)
-        world.run(1000)
-        before = model.pose.position
-        world.run(5000)
-        assert math.dist(before, model.pose.position) < 1e-4
+def test_a_parked_robot_does_not_creep(world, spec, degrees, yaw):
+    model = placed(world, spec, tilted_floor(world, pitch=-degrees), yaw)
+    world.run(1000)
+    before = model.pose.position
+    world.run(5000)
+    assert math.dist(before, model.pose.position) < 1e-4
 
 
 def tall(mass=4.0, size=0.4):
@@ -279,23 +273,24 @@ def tall(mass=4.0, size=0.4):
     ],
 )
 @pytest.mark.parametrize('degrees', [0.0, 5.0])
-def test_overturned_robot_with_turning_wheels_stays_in_place(mass, size, forward, turning, degrees):
-    with empty_world() as world:
-        frame = tilted_floor(world, roll=degrees)
-        pose = Pose((0.0, 0.0, size / 2.0 + 0.001), from_rpy(math.pi, 0.0, 0.0))
-        model = world.spawn(tall(mass, size), 'robot', compose(frame, pose))
-        command(model, forward, turning)
-        world.run(500)
-        before = model.pose.position
-        for _ in range(2000):
-            if not degrees:
-                push = (0.0, 0.3 * mass * GRAVITY, 0.0)
-                x, y, z = model.pose.position
-                world.engine.apply_wrench(
-                    model.body, 'base', push, (0.0, 0.0, 0.0), (x, y, z - 0.4 * size)
-                )
-            world.run(1)
-        assert math.dist(model.pose.position, before) < 0.01
+def test_overturned_robot_with_turning_wheels_stays_in_place(
+    world, mass, size, forward, turning, degrees
+):
+    frame = tilted_floor(world, roll=degrees)
+    pose = Pose((0.0, 0.0, size / 2.0 + 0.001), from_rpy(math.pi, 0.0, 0.0))
+    model = world.spawn(tall(mass, size), 'robot', compose(frame, pose))
+    command(model, forward, turning)
+    world.run(500)
+    before = model.pose.position
+    for _ in range(2000):
+        if not degrees:
+            push = (0.0, 0.3 * mass * GRAVITY, 0.0)
+            x, y, z = model.pose.position
+            world.engine.apply_wrench(
+                model.body, 'base', push, (0.0, 0.0, 0.0), (x, y, z - 0.4 * size)
+            )
+        world.run(1)
+    assert math.dist(model.pose.position, before) < 0.01
 
 
 BED = (
@@ -317,25 +312,24 @@ TURNTABLE = (
         (LIGHT, TURNTABLE, -0.3, 0.05),
     ],
 )
-def test_robot_on_a_moving_platform_moves_with_it(spec, joint, moves, speed):
-    with empty_world() as world:
-        bed = world.spawn(
-            urdf_spec('<link name="world"/>' + box('bed', (6.0, 6.0, 0.1), 500.0) + joint),
-            'bed',
-            Pose((0.0, 0.0, 0.5)),
-        )
-        carrier = bed.links['bed']
-        model = placed(world, spec, Pose((0.5, 0.0, 0.55)), yaw=0.7)
-        command(model, speed, 0.0)
-        world.run(500)
-        before = within(carrier.pose, model)
-        for i in range(100):
-            bed.joint('j').set_motor(moves * (i + 1) / 100.0, 1e6)
-            world.run(10)
-        world.run(4000)
-        expected = compose(before, Pose((5.0 * speed, 0.0, 0.0)))
-        after = within(carrier.pose, model)
-        assert math.dist(after.position[:2], expected.position[:2]) < 0.01
+def test_robot_on_a_moving_platform_moves_with_it(world, spec, joint, moves, speed):
+    bed = world.spawn(
+        urdf_spec('<link name="world"/>' + box('bed', (6.0, 6.0, 0.1), 500.0) + joint),
+        'bed',
+        Pose((0.0, 0.0, 0.5)),
+    )
+    carrier = bed.links['bed']
+    model = placed(world, spec, Pose((0.5, 0.0, 0.55)), yaw=0.7)
+    command(model, speed, 0.0)
+    world.run(500)
+    before = within(carrier.pose, model)
+    for i in range(100):
+        bed.joint('j').set_motor(moves * (i + 1) / 100.0, 1e6)
+        world.run(10)
+    world.run(4000)
+    expected = compose(before, Pose((5.0 * speed, 0.0, 0.0)))
+    after = within(carrier.pose, model)
+    assert math.dist(after.position[:2], expected.position[:2]) < 0.01
 
 
 class Touch(NamedTuple):
@@ -369,22 +363,21 @@ def touches(world, model):
 
 
 @pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])
-def test_friction_never_accelerates_a_sliding_robot(spec, heading):
-    with empty_world() as world:
-        model = placed(world, spec, yaw=heading)
-        model.set_twist(
-            Twist(
-                (
-                    0.3 * math.cos(heading) - 0.4 * math.sin(heading),
-                    0.3 * math.sin(heading) + 0.4 * math.cos(heading),
-                    0.0,
-                )
+def test_friction_never_accelerates_a_sliding_robot(world, spec, heading):
+    model = placed(world, spec, yaw=heading)
+    model.set_twist(
+        Twist(
+            (
+                0.3 * math.cos(heading) - 0.4 * math.sin(heading),
+                0.3 * math.sin(heading) + 0.4 * math.cos(heading),
+                0.0,
             )
         )
-        fastest = math.hypot(*model.twist.linear[:2])
-        for _ in range(200):
-            world.run(1)
-            assert math.hypot(*model.twist.linear[:2]) <= fastest
+    )
+    fastest = math.hypot(*model.twist.linear[:2])
+    for _ in range(200):
+        world.run(1)
+        assert math.hypot(*model.twist.linear[:2]) <= fastest
 
 
 # Robots on one caster tip onto their front edge and back when they start backwards.
@@ -399,27 +392,26 @@ def test_friction_never_accelerates_a_sliding_robot(spec, heading):
         (robot_spec(), 0.4, 0.0, ((-0.5, 0.0), (0.5, 0.0))),
     ],
 )
-def test_friction_is_within_its_limit_and_adds_no_energy(spec, heading, degrees, commands):
+def test_friction_is_within_its_limit_and_adds_no_energy(world, spec, heading, degrees, commands):
     """At most mu N per contact, except for one that loses its load within the step."""
-    with empty_world() as world:
-        frame = tilted_floor(world, roll=degrees) if degrees else None
-        model = placed(world, spec, frame, heading)
-        given = taken = 0.0  # [J]
-        for forward, turning in commands:
-            command(model, forward, turning)
-            limits = kept = 0.0  # [N], sums over a second
-            for _ in range(1000):
-                world.run(1)
-                power = 0.0
-                for limit, held, of_it in touches(world, model):
-                    limits, power = limits + limit, power + of_it
-                    if limit:
-                        assert held <= limit * (1.0 + 1e-6) + 1e-9
-                    else:
-                        kept += held
-                given, taken = given + 0.001 * max(power, 0.0), taken - 0.001 * min(power, 0.0)
-            assert kept < 0.01 * limits
-        assert given < 0.002 * taken
+    frame = tilted_floor(world, roll=degrees) if degrees else None
+    model = placed(world, spec, frame, heading)
+    given = taken = 0.0  # [J]
+    for forward, turning in commands:
+        command(model, forward, turning)
+        limits = kept = 0.0  # [N], sums over a second
+        for _ in range(1000):
+            world.run(1)
+            power = 0.0
+            for limit, held, of_it in touches(world, model):
+                limits, power = limits + limit, power + of_it
+                if limit:
+                    assert held <= limit * (1.0 + 1e-6) + 1e-9
+                else:
+                    kept += held
+            given, taken = given + 0.001 * max(power, 0.0), taken - 0.001 * min(power, 0.0)
+        assert kept < 0.01 * limits
+    assert given < 0.002 * taken
 
 
 def soft(spec, kp):
@@ -450,14 +442,13 @@ def soft(spec, kp):
         (LIGHT, 1e5, 1.0),
     ],
 )
-def test_a_robot_on_soft_wheels_drives_straight(spec, kp, heading):
-    with empty_world() as world:
-        model = placed(world, soft(spec, kp), yaw=heading)
-        world.run(500)
-        before = yaw_of(model.pose.orientation)
-        command(model, 0.3, 0.0)
-        world.run(6500)
-        assert yaw_of(model.pose.orientation) == pytest.approx(before, abs=0.02)
+def test_a_robot_on_soft_wheels_drives_straight(world, spec, kp, heading):
+    model = placed(world, soft(spec, kp), yaw=heading)
+    world.run(500)
+    before = yaw_of(model.pose.orientation)
+    command(model, 0.3, 0.0)
+    world.run(6500)
+    assert yaw_of(model.pose.orientation) == pytest.approx(before, abs=0.02)
 
 
 def on_light_wheels(mass, wheel_mass, size):
@@ -491,14 +482,13 @@ def on_light_wheels(mass, wheel_mass, size):
         (20.0, 0.02, 0.5, 0.1),
     ],
 )
-def test_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, speed):
-    with empty_world() as world:
-        model = placed(world, on_light_wheels(mass, wheel_mass, size))
-        command(model, speed, 0.0)
-        world.run(3000)
-        for _ in range(300):
-            world.run(7)
-            assert forward_speed(model) == pytest.approx(speed, rel=0.03)
+def test_heavy_body_on_light_wheels_keeps_its_speed(world, mass, wheel_mass, size, speed):
+    model = placed(world, on_light_wheels(mass, wheel_mass, size))
+    command(model, speed, 0.0)
+    world.run(3000)
+    for _ in range(300):
+        world.run(7)
+        assert forward_speed(model) == pytest.approx(speed, rel=0.03)
 
 
 @pytest.mark.parametrize('plugins', [True, False], ids=['driven', 'bare'])
@@ -513,19 +503,18 @@ def test_heavy_body_on_light_wheels_keeps_its_speed(mass, wheel_mass, size, spee
         (HEAVY, 0.5),
     ],
 )
-def test_robot_spawned_in_the_floor_rises_without_a_jump(spec, sunk, plugins):
+def test_robot_spawned_in_the_floor_rises_without_a_jump(world, spec, sunk, plugins):
     rest = spec_height(spec) - 0.001
-    with empty_world() as world:
-        model = world.spawn(
-            spec if plugins else replace(spec, plugins=()), 'robot', Pose((0.0, 0.0, rest - sunk))
-        )
-        for _ in range(2000):
-            world.run(2)
-            pose, twist = model.state()
-            assert twist.linear[2] <= 1.0
-            assert pose.position[2] <= rest + 0.02
-            assert rotate(pose.orientation, UP)[2] > 0.9
-        assert model.pose.position[2] == pytest.approx(rest, abs=0.01)
+    model = world.spawn(
+        spec if plugins else replace(spec, plugins=()), 'robot', Pose((0.0, 0.0, rest - sunk))
+    )
+    for _ in range(2000):
+        world.run(2)
+        pose, twist = model.state()
+        assert twist.linear[2] <= 1.0
+        assert pose.position[2] <= rest + 0.02
+        assert rotate(pose.orientation, UP)[2] > 0.9
+    assert model.pose.position[2] == pytest.approx(rest, abs=0.01)
 
 
 @pytest.mark.parametrize(
@@ -537,21 +526,20 @@ def test_robot_spawned_in_the_floor_rises_without_a_jump(spec, sunk, plugins):
         (LIGHT, -1.0),
     ],
 )
-def test_turning_robot_stops_at_once_on_command(spec, turning):
-    with empty_world() as world:
-        model = world.spawn(spec, 'robot', SPAWN_POSE)
-        world.run(SETTLED)
-        command(model, 0.0, turning)
-        world.run(3210)
-        command(model, 0.0, 0.0)
-        plugin = next(iter(model.plugins.values()))
-        ramp = abs(turning) * plugin.wheel_separation / 2.0  # at 1 m/s^2
-        world.run(round(1000 * ramp) + 500)
-        for _ in range(100):
-            world.run(7)
-            twist = model.twist
-            assert math.hypot(*twist.linear) < 5e-5
-            assert max(map(abs, twist.angular)) < 5e-4
+def test_turning_robot_stops_at_once_on_command(world, spec, turning):
+    model = world.spawn(spec, 'robot', SPAWN_POSE)
+    world.run(SETTLED)
+    command(model, 0.0, turning)
+    world.run(3210)
+    command(model, 0.0, 0.0)
+    plugin = next(iter(model.plugins.values()))
+    ramp = abs(turning) * plugin.wheel_separation / 2.0  # at 1 m/s^2
+    world.run(round(1000 * ramp) + 500)
+    for _ in range(100):
+        world.run(7)
+        twist = model.twist
+        assert math.hypot(*twist.linear) < 5e-5
+        assert max(map(abs, twist.angular)) < 5e-4
 
 
 def burger(mu, lean):
@@ -580,12 +568,11 @@ def burger(mu, lean):
         (0.3, 8e-4, 1.0),
     ],
 )
-def test_slippery_wheels_turn_a_robot_on_the_spot_as_commanded(mu, lean, turning):
-    with empty_world() as world:
-        model = placed(world, burger(mu, lean))
-        command(model, 0.0, turning)
-        world.run(1500)
-        assert turned(model, world, 3000) / 3.0 == pytest.approx(turning, rel=0.02)
+def test_slippery_wheels_turn_a_robot_on_the_spot_as_commanded(world, mu, lean, turning):
+    model = placed(world, burger(mu, lean))
+    command(model, 0.0, turning)
+    world.run(1500)
+    assert turned(model, world, 3000) / 3.0 == pytest.approx(turning, rel=0.02)
 
 
 def skid_steer(kp, flipped=False):
@@ -610,13 +597,12 @@ def skid_steer(kp, flipped=False):
 
 
 @pytest.mark.parametrize(('kp', 'turning'), [(1e6, 1.0), (1e6, -1.0), (1e12, 1.0)])
-def test_four_wheels_turn_a_robot_as_in_gazebo(kp, turning):
-    with empty_world() as world:
-        model = world.spawn(skid_steer(kp), 'robot', Pose((0.0, 0.0, 0.131)))
-        world.run(2000)
-        command(model, 0.0, turning)
-        world.run(1000)
-        assert turned(model, world, 4000) / 4.0 == pytest.approx(0.684 * turning, rel=0.05)
+def test_four_wheels_turn_a_robot_as_in_gazebo(world, kp, turning):
+    model = world.spawn(skid_steer(kp), 'robot', Pose((0.0, 0.0, 0.131)))
+    world.run(2000)
+    command(model, 0.0, turning)
+    world.run(1000)
+    assert turned(model, world, 4000) / 4.0 == pytest.approx(0.684 * turning, rel=0.05)
 
 
 # A skid steer that is longer than broad, as public ones are: wheels at x = +-0.1 m, y = +-0.0875 m.
@@ -671,36 +657,33 @@ def turning_by_a_pyramid(heading):
 
 @pytest.mark.parametrize('degrees', [0, 10, 20, 30, 45, 60, 75, 105, -60])
 @pytest.mark.parametrize('turning', [1.0, -0.5])
-def test_long_skid_steer_turns_as_the_friction_pyramid_lets_it(degrees, turning):
-    with empty_world() as world:
-        model = placed(world, long_skid_steer(0.3), yaw=math.radians(degrees))
-        command(model, 0.0, turning)
-        world.run(300)
-        heading = yaw_of(model.pose.orientation)
-        expected = heading
-        for _ in range(100):
-            share = turning_by_a_pyramid(math.copysign(expected, expected * turning))
-            expected += turning * share / 100.0
-        assert turned(model, world, 1000) == pytest.approx(expected - heading, rel=0.05, abs=0.01)
+def test_long_skid_steer_turns_as_the_friction_pyramid_lets_it(world, degrees, turning):
+    model = placed(world, long_skid_steer(0.3), yaw=math.radians(degrees))
+    command(model, 0.0, turning)
+    world.run(300)
+    heading = yaw_of(model.pose.orientation)
+    expected = heading
+    for _ in range(100):
+        share = turning_by_a_pyramid(math.copysign(expected, expected * turning))
+        expected += turning * share / 100.0
+    assert turned(model, world, 1000) == pytest.approx(expected - heading, rel=0.05, abs=0.01)
 
 
 @pytest.mark.parametrize('mu', [3.0, 10.0])
-def test_long_skid_steer_with_much_grip_rattles_and_turns_no_faster(mu):
+def test_long_skid_steer_with_much_grip_rattles_and_turns_no_faster(world, mu):
     """Above a mu of 1 the wheels leave the ground by turns; a friction cone would give 0.42."""
-    with empty_world() as world:
-        model = placed(world, long_skid_steer(mu))
-        command(model, 0.0, 1.0)
-        world.run(300)
-        assert 0.25 < turned(model, world, 4000) / 4.0 < 0.444  # the pyramid's most, at 45 degrees
+    model = placed(world, long_skid_steer(mu))
+    command(model, 0.0, 1.0)
+    world.run(300)
+    assert 0.25 < turned(model, world, 4000) / 4.0 < 0.444  # the pyramid's most, at 45 degrees
 
 
-def test_four_wheels_drive_an_arc_as_in_gazebo():
-    with empty_world() as world:
-        model = world.spawn(skid_steer(1e6), 'robot', Pose((0.0, 0.0, 0.131)))
-        world.run(2000)
-        command(model, 0.5, 0.5)
-        assert turned(model, world, 5000) == pytest.approx(1.600, rel=0.06)  # Gazebo's at 5 s
-        assert forward_speed(model) == pytest.approx(0.501, rel=0.03)
+def test_four_wheels_drive_an_arc_as_in_gazebo(world):
+    model = world.spawn(skid_steer(1e6), 'robot', Pose((0.0, 0.0, 0.131)))
+    world.run(2000)
+    command(model, 0.5, 0.5)
+    assert turned(model, world, 5000) == pytest.approx(1.600, rel=0.06)  # Gazebo's at 5 s
+    assert forward_speed(model) == pytest.approx(0.501, rel=0.03)
 
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE, robot_spec()], ids=['1 kg', '5 kg', 'article'])
@@ -735,33 +718,32 @@ def axle_angle(transform):
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE])
 @pytest.mark.parametrize('driven', [(0.3, 0.0), (0.2, -0.7)])
-def test_wheel_angles_of_transform_joint_states_and_odometry_agree(spec, driven):
+def test_wheel_angles_of_transform_joint_states_and_odometry_agree(world, spec, driven):
     tags = {'odometrySource': 'encoder', 'publishWheelTF': 'true', 'publishWheelJointState': 'true'}
     (plugin,) = spec.plugins
     children = (*plugin.element.children, *(Element(tag, text) for tag, text in tags.items()))
     spec = replace(
         spec, plugins=(replace(plugin, element=replace(plugin.element, children=children)),)
     )
-    with empty_world() as world:
-        model = placed(world, spec)
-        drive = next(iter(model.plugins.values()))
-        told = {}
-        for output in (drive.joint_states, drive.wheel_transform, drive.odometry):
-            output.connect(lambda reading: told.setdefault(type(reading), []).append(reading))
-        start = [wheel.position for wheel in drive.wheels]
-        drive.reset()
-        command(model, *driven)
-        world.run(drive.due - world.clock.steps + 3000)
-        left, right = (wheel.position for wheel in drive.wheels)
-        states = told[JointStates][-1]
-        assert states.positions == pytest.approx((right, left), abs=1e-9)
-        for transform, angle in zip(told[FrameTransform][-2:], (left, right), strict=True):
-            apart = math.remainder(axle_angle(transform) - angle, math.tau)
-            assert abs(apart) < 1e-9
-        ways = [
-            (now - then) * drive.wheel_diameter / 2.0
-            for now, then in zip((left, right), start, strict=True)
-        ]
-        turn = (ways[1] - ways[0]) / drive.wheel_separation
-        yaw = yaw_of(told[Odometry][-1].pose.orientation)
-        assert math.remainder(yaw - turn, math.tau) == pytest.approx(0.0, abs=1e-9)
+    model = placed(world, spec)
+    drive = next(iter(model.plugins.values()))
+    told = {}
+    for output in (drive.joint_states, drive.wheel_transform, drive.odometry):
+        output.connect(lambda reading: told.setdefault(type(reading), []).append(reading))
+    start = [wheel.position for wheel in drive.wheels]
+    drive.reset()
+    command(model, *driven)
+    world.run(drive.due - world.clock.steps + 3000)
+    left, right = (wheel.position for wheel in drive.wheels)
+    states = told[JointStates][-1]
+    assert states.positions == pytest.approx((right, left), abs=1e-9)
+    for transform, angle in zip(told[FrameTransform][-2:], (left, right), strict=True):
+        apart = math.remainder(axle_angle(transform) - angle, math.tau)
+        assert abs(apart) < 1e-9
+    ways = [
+        (now - then) * drive.wheel_diameter / 2.0
+        for now, then in zip((left, right), start, strict=True)
+    ]
+    turn = (ways[1] - ways[0]) / drive.wheel_separation
+    yaw = yaw_of(told[Odometry][-1].pose.orientation)
+    assert math.remainder(yaw - turn, math.tau) == pytest.approx(0.0, abs=1e-9)

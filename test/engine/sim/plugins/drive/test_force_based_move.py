@@ -1,13 +1,11 @@
 """Force-based movement: forces proportional to the error of velocity, expiry, odometry."""
 
 import math
-from contextlib import closing
 
 import pytest
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy, yaw_of
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.public import World
 
 MASS, INERTIA = 10.0, 2.0  # [kg], [kg m^2]
 GAIN, YAW_GAIN = 100.0, 40.0  # [N s/m], [N m s/rad]
@@ -36,30 +34,26 @@ def approached(wanted, gain, inertia, steps):
     return wanted * (1.0 - (1.0 - gain * STEP / inertia) ** steps)
 
 
-def test_the_velocity_approaches_the_command_in_the_models_own_axes():
-    with closing(World()) as world:
-        model = world.spawn(box(), 'box', Pose((0.0, 0.0, 1.0), from_rpy(0.0, 0.0, YAW)))
-        model.plugin('move').command(0.5, 0.0, 0.2)
-        world.run(50)
-        x, y = (approached(wanted, GAIN, MASS, 50) for wanted in (0.5, 0.2))
-        cos, sin = math.cos(YAW), math.sin(YAW)
-        assert model.twist.linear == pytest.approx(
-            (cos * x - sin * y, sin * x + cos * y, 0.0), abs=1e-6
-        )
-        model.plugin('move').command(0.0, 0.4)
-        world.run(2000)
-        assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
-        assert model.twist.angular == pytest.approx((0.0, 0.0, 0.4), abs=1e-4)
+def test_the_velocity_approaches_the_command_in_the_models_own_axes(world):
+    model = world.spawn(box(), 'box', Pose((0.0, 0.0, 1.0), from_rpy(0.0, 0.0, YAW)))
+    model.plugin('move').command(0.5, 0.0, 0.2)
+    world.run(50)
+    x, y = (approached(wanted, GAIN, MASS, 50) for wanted in (0.5, 0.2))
+    cos, sin = math.cos(YAW), math.sin(YAW)
+    assert model.twist.linear == pytest.approx(
+        (cos * x - sin * y, sin * x + cos * y, 0.0), abs=1e-6
+    )
+    model.plugin('move').command(0.0, 0.4)
+    world.run(2000)
+    assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
+    assert model.twist.angular == pytest.approx((0.0, 0.0, 0.4), abs=1e-4)
 
 
-def test_the_yaw_rate_approaches_the_command():
-    with closing(World()) as world:
-        model = world.spawn(box(), 'box', Pose((0.0, 0.0, 1.0)))
-        model.plugin('move').command(0.0, 0.4)
-        world.run(50)
-        assert model.twist.angular[2] == pytest.approx(
-            approached(0.4, YAW_GAIN, INERTIA, 50), rel=1e-5
-        )
+def test_the_yaw_rate_approaches_the_command(world):
+    model = world.spawn(box(), 'box', Pose((0.0, 0.0, 1.0)))
+    model.plugin('move').command(0.0, 0.4)
+    world.run(50)
+    assert model.twist.angular[2] == pytest.approx(approached(0.4, YAW_GAIN, INERTIA, 50), rel=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -70,35 +64,32 @@ def test_the_yaw_rate_approaches_the_command():
         (RIDGEBACK, '<cmdVelTimeOut>30</cmdVelTimeOut>', True),
     ],
 )
-def test_a_command_of_ridgebacks_plugin_expires(library, tags, moves):
-    with closing(World()) as world:
-        model = world.spawn(box(library, tags=tags), 'box', Pose((0.0, 0.0, 1.0)))
-        model.plugin('move').command(0.5, 0.0)
-        world.run(249)
-        assert model.twist.linear[0] > 0.4
-        world.run(2000)
-        assert (model.twist.linear[0] > 0.4) == moves
+def test_a_command_of_ridgebacks_plugin_expires(world, library, tags, moves):
+    model = world.spawn(box(library, tags=tags), 'box', Pose((0.0, 0.0, 1.0)))
+    model.plugin('move').command(0.5, 0.0)
+    world.run(249)
+    assert model.twist.linear[0] > 0.4
+    world.run(2000)
+    assert (model.twist.linear[0] > 0.4) == moves
 
 
-def test_odometry_begins_at_the_spawn_pose():
-    with closing(World()) as world:
-        start = Pose((2.0, 3.0, 1.0), from_rpy(0.0, 0.0, YAW))
-        model = world.spawn(box(), 'box', start)
-        plugin = model.plugin('move')
-        readings = []
-        plugin.odometry.connect(readings.append)
-        plugin.command(0.5, 0.1)
-        world.run(1000)
-        (x, y, z), orientation = readings[-1].pose
-        assert (x, y) == pytest.approx((0.5 * 0.9, 0.02), abs=0.03)  # the time constant is 0.1 s
-        assert z == pytest.approx(0.0, abs=1e-6)
-        assert yaw_of(orientation) == pytest.approx(0.1 * (1.0 - INERTIA / YAW_GAIN), abs=0.005)
-        assert readings[-1].twist.linear == pytest.approx((0.5, 0.0, 0.0), abs=0.01)
-        assert len(readings) == 19  # 20 Hz, each one step late, as in Gazebo
+def test_odometry_begins_at_the_spawn_pose(world):
+    start = Pose((2.0, 3.0, 1.0), from_rpy(0.0, 0.0, YAW))
+    model = world.spawn(box(), 'box', start)
+    plugin = model.plugin('move')
+    readings = []
+    plugin.odometry.connect(readings.append)
+    plugin.command(0.5, 0.1)
+    world.run(1000)
+    (x, y, z), orientation = readings[-1].pose
+    assert (x, y) == pytest.approx((0.5 * 0.9, 0.02), abs=0.03)  # the time constant is 0.1 s
+    assert z == pytest.approx(0.0, abs=1e-6)
+    assert yaw_of(orientation) == pytest.approx(0.1 * (1.0 - INERTIA / YAW_GAIN), abs=0.005)
+    assert readings[-1].twist.linear == pytest.approx((0.5, 0.0, 0.0), abs=0.01)
+    assert len(readings) == 19  # 20 Hz, each one step late, as in Gazebo
 
 
-def test_a_base_that_does_not_exist_leaves_the_plugin_out(caplog):
-    with closing(World()) as world:
-        model = world.spawn(box(base='nowhere'), 'box', Pose())
-        assert not model.plugins
+def test_a_base_that_does_not_exist_leaves_the_plugin_out(world, caplog):
+    model = world.spawn(box(base='nowhere'), 'box', Pose())
+    assert not model.plugins
     assert 'robotBaseFrame: nowhere does not exist' in caplog.text

@@ -1,7 +1,5 @@
 """The force plugin: as recorded in Gazebo, until the next command, through resets."""
 
-from contextlib import closing
-
 import pytest
 from support import empty_world
 from support.recorded import DATA, load
@@ -10,7 +8,6 @@ from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.scheduler import NEVER
-from rosbots_description.sim.runtime.world import World
 
 PUSH = ((5.0, 0.0, 60.0), (0.0, 0.0, 0.0))
 NOTHING = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -38,36 +35,33 @@ def test_body_moves_as_recorded():
             assert twist.linear == pytest.approx(velocity, abs=1e-5)
 
 
-def test_force_ends_with_zero_and_not_with_a_reset():
-    with closing(World()) as world:
-        model = world.spawn(spec(), 'fbot', Pose((0.0, 0.0, 1.0)))
-        plugin = model.plugin('force')
-        assert plugin.due == NEVER
-        plugin.command(*PUSH)
-        world.run(10)
-        world.reset_simulation()
-        world.run(10)
-        assert model.twist.linear[0] == pytest.approx(0.01)
-        plugin.command(*NOTHING)
-        assert plugin.due == NEVER
-        world.run(10)
-        assert model.twist.linear[0] == pytest.approx(0.01)
+def test_force_ends_with_zero_and_not_with_a_reset(world):
+    model = world.spawn(spec(), 'fbot', Pose((0.0, 0.0, 1.0)))
+    plugin = model.plugin('force')
+    assert plugin.due == NEVER
+    plugin.command(*PUSH)
+    world.run(10)
+    world.reset_simulation()
+    world.run(10)
+    assert model.twist.linear[0] == pytest.approx(0.01)
+    plugin.command(*NOTHING)
+    assert plugin.due == NEVER
+    world.run(10)
+    assert model.twist.linear[0] == pytest.approx(0.01)
 
 
-def test_torque_rotates_about_the_centre_of_mass():
-    with closing(World()) as world:
-        model = world.spawn(spec(), 'fbot', Pose())
-        model.plugin('force').command((0.0, 0.0, 0.0), (0.0, 0.0542, 0.0))
-        world.run(1)
-        assert model.twist.angular[1] == pytest.approx(0.0542 / 0.0833 * 1e-3, rel=1e-3)
-        assert model.twist.linear[0] == pytest.approx(-0.1 * model.twist.angular[1])
+def test_torque_rotates_about_the_centre_of_mass(world):
+    model = world.spawn(spec(), 'fbot', Pose())
+    model.plugin('force').command((0.0, 0.0, 0.0), (0.0, 0.0542, 0.0))
+    world.run(1)
+    assert model.twist.angular[1] == pytest.approx(0.0542 / 0.0833 * 1e-3, rel=1e-3)
+    assert model.twist.linear[0] == pytest.approx(-0.1 * model.twist.angular[1])
 
 
-def test_numbers_that_are_not_finite_are_rejected():
-    with closing(World()) as world:
-        plugin = world.spawn(spec(), 'fbot', Pose()).plugin('force')
-        with pytest.raises(ValueError, match='takes finite numbers'):
-            plugin.command((float('nan'), 0.0, 0.0), (0.0, 0.0, 0.0))
+def test_numbers_that_are_not_finite_are_rejected(world):
+    plugin = world.spawn(spec(), 'fbot', Pose()).plugin('force')
+    with pytest.raises(ValueError, match='takes finite numbers'):
+        plugin.command((float('nan'), 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 @pytest.mark.parametrize(
@@ -82,9 +76,8 @@ def test_numbers_that_are_not_finite_are_rejected():
         ),
     ],
 )
-def test_plugin_with_invalid_tags_is_left_out_with_an_error(caplog, tag, value, sentence):
-    with closing(World()) as world:
-        model = world.spawn(spec(**{tag: value}), 'fbot', Pose())
-        assert sentence in caplog.text
-        assert not model.plugins
+def test_plugin_with_invalid_tags_is_left_out_with_an_error(world, caplog, tag, value, sentence):
+    model = world.spawn(spec(**{tag: value}), 'fbot', Pose())
+    assert sentence in caplog.text
+    assert not model.plugins
     assert PluginError.__name__ not in caplog.text

@@ -3,7 +3,6 @@
 import itertools
 import logging
 import math
-from contextlib import closing
 
 import pytest
 from support.fake_drive import collect
@@ -18,17 +17,10 @@ from rosbots_description.sim.core.transforms import (
 )
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.scheduler import NEVER
-from rosbots_description.sim.runtime.world import World
 
 GOAL = Pose((1.0, 0.0, 1.0))
 AFTER = 23  # steps from the first transform to the first recorded state
 LATE = 0.02  # [m/s] change of a velocity within 1 ms, between reading it and the pose
-
-
-@pytest.fixture
-def world():
-    with closing(World()) as made:
-        yield made
 
 
 def spawn(world, pose, change=lambda text: text):

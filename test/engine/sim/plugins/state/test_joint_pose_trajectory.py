@@ -1,7 +1,6 @@
 """Trajectories of joint positions: as recorded in Gazebo, with physics paused meanwhile."""
 
 import math
-from contextlib import closing
 
 import pytest
 from support import empty_world, urdf_spec
@@ -10,7 +9,6 @@ from support.scenes import box, link
 
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.runtime.world import World
 
 HALF = 500_000_000  # [ns]
 BEGAN = 30.417  # [s] start of the trajectory, estimated: it was not recorded
@@ -21,12 +19,6 @@ ARM = (
     + '<joint name="turn" type="continuous"><parent link="base"/><child link="rod"/>'
     '<origin xyz="0 0 2"/><axis xyz="0 0 1"/></joint>' + PLUGIN
 )
-
-
-@pytest.fixture
-def world():
-    with closing(World()) as made:
-        yield made
 
 
 @pytest.fixture

@@ -80,15 +80,14 @@ def test_reduced_link_has_its_true_pose_in_the_frame_named_after_its_parent(skid
     assert found.pose.position[2] == pytest.approx(pose.position[2] + 2 * 0.13, abs=1e-4)
 
 
-def test_in_a_strict_world_a_reduced_link_is_where_gazebo_tells_it():
+def test_in_a_strict_world_a_reduced_link_is_where_gazebo_tells_it(world):
     text = (DATA / 'robots' / 'skid4_p3d.urdf').read_text(encoding='utf-8')
-    with closing(World()) as world:
-        world.strict = True
-        at = recorded('gt')[1]
-        model = world.spawn(load_urdf(text, 'skid4')[0], 'skid4', at)
-        plugin = model.plugin('p3d_lumped')
-        readings = collect(plugin.odometry)
-        plugin.report()
+    world.strict = True
+    at = recorded('gt')[1]
+    model = world.spawn(load_urdf(text, 'skid4')[0], 'skid4', at)
+    plugin = model.plugin('p3d_lumped')
+    readings = collect(plugin.odometry)
+    plugin.report()
     assert plugin.body == 'base_footprint'
     height = recorded('gt_lumped')[1].position[2] - at.position[2]  # -0.13 m, where +0.13 is true
     assert readings[0].pose.position == pytest.approx(
@@ -104,7 +103,7 @@ P3D = (
 PLACE = Pose((0.3, -0.2, 0.5), from_rpy(0.4, 0.2, -1.0))  # of the mast in the base
 
 
-def test_reduced_link_on_a_rotating_body_has_its_true_pose_and_twist():
+def test_reduced_link_on_a_rotating_body_has_its_true_pose_and_twist(world):
     mast = (
         '<joint name="m" type="fixed"><parent link="base"/><child link="mast"/>'
         '<origin xyz="0.3 -0.2 0.5" rpy="0.4 0.2 -1.0"/></joint>'
@@ -114,18 +113,17 @@ def test_reduced_link_on_a_rotating_body_has_its_true_pose_and_twist():
     )
     spec = urdf_spec(box('base', (1.0, 1.0, 1.0), 1.0) + '<link name="mast"/>' + mast + plugins)
     at = Pose((1.0, 2.0, 3.0), from_rpy(0.0, 0.5, math.pi / 3))
-    with closing(World()) as world:
-        model = world.spawn(spec, 'thing', at)
-        model.world = world
-        model.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, 2.0)))
-        mast, base = collect(model.plugin('mast').odometry), collect(model.plugin('base').odometry)
-        world.run(1)
-        true = compose(model.pose, PLACE)
-        assert mast[0].pose.position == pytest.approx(true.position)
-        assert mast[0].pose.orientation == pytest.approx(true.orientation)
-        x, y, _ = (a - b for a, b in zip(true.position, model.pose.position, strict=True))
-        assert mast[0].twist.linear[:2] == pytest.approx((-2.0 * y, 2.0 * x), abs=1e-3)
-        back = compose(Pose(), base[0].pose)
-        assert compose(Pose(true.position, true.orientation), Pose(back.position)).position == (
-            pytest.approx(model.pose.position)
-        )
+    model = world.spawn(spec, 'thing', at)
+    model.world = world
+    model.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.0, 2.0)))
+    mast, base = collect(model.plugin('mast').odometry), collect(model.plugin('base').odometry)
+    world.run(1)
+    true = compose(model.pose, PLACE)
+    assert mast[0].pose.position == pytest.approx(true.position)
+    assert mast[0].pose.orientation == pytest.approx(true.orientation)
+    x, y, _ = (a - b for a, b in zip(true.position, model.pose.position, strict=True))
+    assert mast[0].twist.linear[:2] == pytest.approx((-2.0 * y, 2.0 * x), abs=1e-3)
+    back = compose(Pose(), base[0].pose)
+    assert compose(Pose(true.position, true.orientation), Pose(back.position)).position == (
+        pytest.approx(model.pose.position)
+    )
