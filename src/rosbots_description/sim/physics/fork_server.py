@@ -2,8 +2,10 @@
 
 The children are forked from a small server process, itself forked from this one before there were
 threads, sockets and models: a fork of a threaded process can deadlock, and a fork of a big process
-is slow. A server that has died is replaced by a new interpreter, which imports everything anew in
-0.4 s and 25 MB; the fork server of `multiprocessing` always starts in that way.
+is slow. A server that has died is replaced by a new interpreter, which imports everything anew.
+
+The fork server of `multiprocessing` always starts in that way: in 0.18 s of processor time and with
+55 MB, here 0.01 s and 4 MB; its children take as long. And it does not notice one that is stopped.
 """
 
 import contextlib
@@ -21,9 +23,8 @@ import socket
 import struct
 import sys
 import threading
-import time
 from collections.abc import Callable
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from ..core import POLL_PERIOD, Fault, ProcessWatch, report
 
@@ -33,7 +34,7 @@ MIN_POLLS = 10  # after which the caller is asked whether it still waits for the
 
 MAX_REPORT = 4096  # [bytes] for a report, allocated in advance in case memory runs out
 _REQUEST = struct.Struct('d')  # allowance
-_END = struct.Struct('?i')  # whether a child was created; its exit code, else errno
+_ANSWER = struct.Struct('i')  # first the number of the child, or -errno; then its exit code
 _PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15  # of <sys/prctl.h>
 _prctl = ctypes.CDLL(None).prctl
 # A new server process: the search path of this one, and the channel in place of standard input.
@@ -104,7 +105,7 @@ class ForkServer:
 
         Args:
             allowance: processor time [s] after which the child is killed by SIGPROF; one that
-                sleeps for long is killed by SIGALRM.
+                sleeps for long is killed, too, with the exit code of SIGALRM.
             is_wanted: polled after 5 s and later; whether the report is still wanted.
         Raises:
             OSError: no child could be created.
@@ -187,22 +188,27 @@ class _Server:
                 raise ServerEndedError from None
 
     def _wait(self, caller: socket.socket, is_wanted: Callable[[], bool]) -> int:
-        """Return the exit code of a child."""
-        answer, polls, watch = None, 0, ProcessWatch(self.process)
-        while answer is None:
+        """Return the exit code of a child. When `caller` is closed before, the child is killed."""
+        polls, server, child = 0, ProcessWatch(self.process), None
+        while True:
             try:
-                answer = caller.recv(_END.size)
+                answer = caller.recv(_ANSWER.size)
             except TimeoutError:
                 polls += 1
                 if polls >= MIN_POLLS and not is_wanted():
                     raise Cancelled from None
-                self._require_running(watch)
-        if not answer:
-            raise ServerEndedError
-        made, number = _END.unpack(answer)
-        if not made:
-            raise OSError(number, os.strerror(number))
-        return int(number)
+                self._require_running(server)
+                if child is not None and _is_hung(child):
+                    raise Killed(-signal.SIGALRM) from None
+                continue
+            if not answer:
+                raise ServerEndedError
+            number = int(_ANSWER.unpack(answer)[0])
+            if child is not None:
+                return number
+            if number < 0:
+                raise OSError(-number, os.strerror(-number))
+            child = ProcessWatch(number)
 
     def _require_running(self, watch: ProcessWatch) -> None:
         with self._lock:
@@ -210,39 +216,24 @@ class _Server:
                 raise ServerEndedError
 
 
-class _Child:
+def _is_hung(child: ProcessWatch) -> bool:
+    try:
+        return child.is_hung()
+    except (FileNotFoundError, ProcessLookupError):  # it has ended just now
+        return False
+
+
+class _Child(NamedTuple):
     """A child process, as the server process sees it."""
 
-    def __init__(self, process: int, caller: socket.socket, life: int) -> None:
-        """Watch a process.
-
-        Args:
-            caller: socket that gets the result; the other end is closed if it is not wanted.
-            life: a pipe that is closed when the process ends.
-        """
-        self._process, self.caller, self.life = process, caller, life
-        self._watch = ProcessWatch(process)
-
-    def kill(self, number: int = signal.SIGKILL) -> None:
-        """Send it a signal; it remains a zombie until `end`."""
-        os.kill(self._process, number)
-
-    def end(self) -> None:
-        """Send its exit code to the caller."""
-        os.close(self.life)
-        code = os.waitstatus_to_exitcode(os.waitpid(self._process, 0)[1])
-        _answer(self.caller, True, code)
-
-    def check_hung(self) -> None:
-        """Kill it if it has made no progress for too long."""
-        if self._watch.is_hung():
-            self.kill(signal.SIGALRM)
-            self.kill(signal.SIGCONT)  # a stopped process takes no other signal
+    process: int  # a zombie until it is removed
+    caller: socket.socket  # gets the answers; the other end is closed if they are not wanted
+    life: int  # a pipe that is closed when the process ends
 
 
-def _answer(caller: socket.socket, made: bool, number: int) -> None:
-    with caller, contextlib.suppress(OSError):  # it has gone
-        caller.send(_END.pack(made, number))
+def _answer(caller: socket.socket, number: int) -> None:
+    with contextlib.suppress(OSError):  # it has gone
+        caller.send(_ANSWER.pack(number))
 
 
 def serve_standard_input() -> NoReturn:
@@ -271,11 +262,10 @@ def _run_server(prepare: Callable[[], Work], channel: socket.socket, name: str) 
 
 def _serve(work: Work, channel: socket.socket) -> None:
     children: set[_Child] = set()
-    next_poll = 0.0
     with selectors.DefaultSelector() as selector:
         selector.register(channel, selectors.EVENT_READ)
         while True:
-            for key, _ in selector.select(POLL_PERIOD if children else None):
+            for key, _ in selector.select():
                 child = key.data
                 if child is None:
                     request, files, _, _ = socket.recv_fds(channel, _REQUEST.size, 2)
@@ -292,14 +282,13 @@ def _serve(work: Work, channel: socket.socket) -> None:
                     selector.unregister(child.life)
                     with contextlib.suppress(KeyError):  # its caller has gone
                         selector.unregister(child.caller)
-                    child.end()
+                    os.close(child.life)
+                    code = os.waitstatus_to_exitcode(os.waitpid(child.process, 0)[1])
+                    with child.caller:
+                        _answer(child.caller, code)
                 elif child in children:  # its caller has gone
                     selector.unregister(child.caller)
-                    child.kill()
-            if time.monotonic() >= next_poll:
-                next_poll = time.monotonic() + POLL_PERIOD
-                for child in children:
-                    child.check_hung()
+                    os.kill(child.process, signal.SIGKILL)
 
 
 def _fork_child(work: Work, allowance: float, files: list[int]) -> _Child | None:
@@ -320,11 +309,13 @@ def _fork_child(work: Work, allowance: float, files: list[int]) -> _Child | None
         process = os.fork()
         if not process:
             _run_child(work, allowance, report, death, parent)
+        _answer(caller, process)
         return _Child(process, caller, life)
     except OSError as error:
         if life is not None:
             os.close(life)
-        _answer(caller, False, error.errno or errno.EIO)
+        with caller:
+            _answer(caller, -(error.errno or errno.EIO))
         return None
     finally:
         os.close(report)
@@ -338,8 +329,7 @@ def _run_child(work: Work, allowance: float, report: int, death: int, parent: in
         _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() != parent:
             os._exit(1)  # the parent has ended already
-        for number in (signal.SIGPROF, signal.SIGALRM):
-            signal.signal(number, signal.SIG_DFL)
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_PROF, allowance)
         _close_files(report, death)
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as file:
