@@ -51,16 +51,12 @@ def read_limits(described: ControlledJoint | None, params: ControllerParameters)
         limits = replace(limits, lower=-math.inf, upper=math.inf)
     elif position is True and lower is not None and upper is not None:
         limits = replace(limits, lower=lower, upper=upper)
-    for field, name in (
-        ('velocity', 'velocity'),
-        ('acceleration', 'acceleration'),
-        ('effort', 'effort'),
-    ):
+    for name in ('velocity', 'acceleration', 'effort'):
         given, most = params.find(f'has_{name}_limits'), params.number(f'max_{name}')
         if given is False:
-            limits = replace(limits, **{field: math.inf})  # type: ignore[arg-type]
+            limits = replace(limits, **{name: math.inf})  # type: ignore[arg-type]
         elif given is True and most is not None:
-            limits = replace(limits, **{field: abs(most)})  # type: ignore[arg-type]
+            limits = replace(limits, **{name: abs(most)})  # type: ignore[arg-type]
     if not limits.kind:
         wraps = params.find('angle_wraparound') is True
         endless = CONTINUOUS if wraps else 'prismatic'
@@ -84,26 +80,24 @@ class PositionSaturation:
 
     def enforce(self, command: float, position: float, velocity: float, period: float) -> float:
         """Return the command that is allowed."""
-        limits = self._limits
         last = position if math.isnan(self._last) else self._last
-        step = limits.velocity * period if period else 0.0
-        low, high = max(last - step, limits.lower), min(last + step, limits.upper)
+        down, up = self._steps(last, period)
+        low, high = max(last + down, self._limits.lower), min(last + up, self._limits.upper)
         self._last = min(max(command, low), high)
         return self._last
+
+    def _steps(self, last: float, period: float) -> tuple[float, float]:
+        """Return the least and the greatest change in a period."""
+        step = self._limits.velocity * period if period else 0.0
+        return -step, step
 
 
 class PositionSoftLimits(PositionSaturation):
     """Also slows down towards the soft limits: v = k_position * distance."""
 
-    def enforce(self, command: float, position: float, velocity: float, period: float) -> float:
-        """Return the command that is allowed."""
-        limits = self._limits
-        last = position if math.isnan(self._last) else self._last
-        slowest, fastest = _velocity_bounds(limits, last)
-        low = max(last + slowest * period, limits.lower)
-        high = min(last + fastest * period, limits.upper)
-        self._last = min(max(command, low), high)
-        return self._last
+    def _steps(self, last: float, period: float) -> tuple[float, float]:
+        slowest, fastest = _velocity_bounds(self._limits, last)
+        return slowest * period, fastest * period
 
 
 class EffortSaturation:

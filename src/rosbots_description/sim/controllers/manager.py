@@ -131,12 +131,7 @@ class ControllerManager:
         Raises:
             ControllerError: it runs, or there is none of that name.
         """
-        found = self.controllers.get(name)
-        if found is None:
-            raise ControllerError(
-                f"Could not unload controller with name '{name}' because no "
-                'controller with this name exists'
-            )
+        (found,) = self._find([name], 'unload', strict=True)
         if found.state == RUNNING:
             raise ControllerError(
                 f"Could not unload controller with name '{name}' because it is still running"

@@ -52,7 +52,7 @@ class ModelPlugin(Plugin):
         self.world = world
         self.model = model
         self.spec = spec
-        self.params = Params(spec.element, missing=self.missing, level=self.missing_level)
+        self.params = Params(spec.element, self.missing, self.missing_level)
         self.params.ignore('alwaysOn')
         self.namespace = self.find_namespace(self.params.text('robotNamespace'))
         self.log_prefix = self.params.prefix = self.prefix.format(self.namespace)

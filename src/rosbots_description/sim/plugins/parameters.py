@@ -1,6 +1,5 @@
 """Typed reading of a plugin's tags, with upstream's defaults and upstream's warnings."""
 
-import logging
 import re
 from collections.abc import Callable
 from typing import TypeVar
@@ -20,17 +19,10 @@ class Params:
     `prefix` begins every message, e.g. 'DiffDrive(ns = //): '. `values` has what `read` returned.
     """
 
-    def __init__(
-        self,
-        element: Element,
-        prefix: str = '',
-        missing: Missing | None = None,
-        level: int = logging.WARNING,
-    ) -> None:
-        """Read the tags of `element`; `missing` words the warning about a missing tag."""
-        self.prefix = prefix
-        self._element = element
-        self._missing, self._level = missing or says_default, level
+    def __init__(self, element: Element, missing: Missing, level: int) -> None:
+        """Read the tags of `element`; `missing` words the message about a missing tag."""
+        self.prefix = ''
+        self._element, self._missing, self._level = element, missing, level
         self._read: set[str] = set()
         self.values: dict[str, str | float | bool] = {}
 

@@ -1,6 +1,8 @@
 """Models, links, joints and collisions in a world: read and move them by name."""
 
 import math
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 from ..core import (
@@ -25,7 +27,17 @@ from .plugin import Plugin
 from .sensor import SensorPart
 
 
-class Link:
+class _Named:
+    """Prints as its kind and scoped name."""
+
+    scoped_name: str
+
+    def __repr__(self) -> str:
+        """Return its kind and name."""
+        return f'<{type(self).__name__} {self.scoped_name}>'
+
+
+class Link(_Named):
     """A rigid body of a model."""
 
     def __init__(self, model: 'Model', spec: LinkSpec) -> None:
@@ -36,10 +48,6 @@ class Link:
         # A link of a nested model is called `inner::link` here and `link` in its own model.
         self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
         self.collisions = {c.name: CollisionFrame(self, c) for c in spec.collisions}
-
-    def __repr__(self) -> str:
-        """Return its kind and name."""
-        return f'<{type(self).__name__} {self.scoped_name}>'
 
     @property
     def pose(self) -> Pose:
@@ -94,7 +102,7 @@ class Link:
         self.model.engine.set_slip_compliance(self.model.body, self.name, axis, compliances)
 
 
-class CollisionFrame:
+class CollisionFrame(_Named):
     """A collision of a link; it can serve as a reference frame."""
 
     def __init__(self, link: Link, spec: Collision) -> None:
@@ -103,10 +111,6 @@ class CollisionFrame:
         self.name = spec.name
         self.scoped_name = f'{link.scoped_name}::{spec.name}'
         self.names = {self.scoped_name, self.name, self.name.rpartition('::')[2]}
-
-    def __repr__(self) -> str:
-        """Return its kind and name."""
-        return f'<{type(self).__name__} {self.scoped_name}>'
 
     @property
     def pose(self) -> Pose:
@@ -119,7 +123,7 @@ class CollisionFrame:
         return compose(pose, self.spec.pose), twist
 
 
-class Joint:
+class Joint(_Named):
     """A movable joint between two links of a model."""
 
     def __init__(self, model: 'Model', spec: JointSpec) -> None:
@@ -127,10 +131,6 @@ class Joint:
         self.spec = spec
         self.name = spec.name
         self.scoped_name = f'{model.name}::{spec.name}'
-
-    def __repr__(self) -> str:
-        """Return its kind and name."""
-        return f'<{type(self).__name__} {self.scoped_name}>'
 
     @property
     def position(self) -> float:
@@ -178,7 +178,7 @@ class Joint:
         return self.model.engine.joint_state(self.model.body, self.name)
 
 
-class Model:
+class Model(_Named):
     """A model in the world. Its frame moves with its first link, the canonical one.
 
     `links`, `joints` (the movable ones), `plugins` and `sensors` are dicts by name, in the order of
@@ -209,10 +209,6 @@ class Model:
         self.left_out = list(spec.left_out)  # parts that were left out, each in a few words
         self._canonical = spec.links[0].name
         self._model_in_canonical = inverse(spec.links[0].pose)
-
-    def __repr__(self) -> str:
-        """Return its kind and name."""
-        return f'<{type(self).__name__} {self.name}>'
 
     @property
     def pose(self) -> Pose:
@@ -315,6 +311,10 @@ class Model:
             if joint.name in self.joints:
                 self.joints[joint.name].spec = joint
 
+    def change_links(self, change: Callable[[LinkSpec], LinkSpec]) -> None:
+        """Replace the description of each link by what `change` returns; the motion stays."""
+        self.respecify(replace(self.spec, links=tuple(map(change, self.spec.links))))
+
     def _keep_scales(self, old: EngineBody) -> None:
         """Scale the body as the one that it replaces."""
         self.engine.scale_mass(self.body, old.mass_scale)
@@ -340,9 +340,7 @@ class Model:
         """
         link = self.links.get(name.removeprefix(f'{self.name}::'))
         if link is None:
-            raise NotFoundError(
-                f"model '{self.name}' has no link '{name}'; its links: {', '.join(self.links)}"
-            )
+            raise self._not_found('link', name, self.links)
         return link
 
     def locate(self, name: str) -> tuple[Link, Pose]:
@@ -369,10 +367,8 @@ class Model:
         for plugin in self.plugins.values():
             if library_name(plugin.spec.filename) in libraries:
                 return plugin
-        known = ', '.join(f"'{key}' ({one.spec.filename})" for key, one in self.plugins.items())
-        raise NotFoundError(
-            f"model '{self.name}' has no plugin '{name}'; its plugins: {known or 'none'}"
-        )
+        known = (f"'{key}' ({one.spec.filename})" for key, one in self.plugins.items())
+        raise self._not_found('plugin', name, known)
 
     def controller(self, name: str) -> Any:  # noqa: ANN401  each class has commands of its own
         """Return the controller of that name, as the plugin gazebo_ros_control has loaded it.
@@ -384,10 +380,7 @@ class Model:
             own: one for plugin in self.plugins.values() for own, one in plugin.controllers.items()
         }
         if name not in loaded:
-            raise NotFoundError(
-                f"model '{self.name}' has no controller '{name}'; its controllers: "
-                f'{", ".join(loaded) or "none"}'
-            )
+            raise self._not_found('controller', name, loaded)
         return loaded[name]
 
     @property
@@ -409,10 +402,7 @@ class Model:
         }
         if name in inner:
             return inner[name]
-        known = ', '.join(reversed(inner))
-        raise NotFoundError(
-            f"model '{self.name}' has no sensor '{name}'; its sensors: {known or 'none'}"
-        )
+        raise self._not_found('sensor', name, reversed(inner))
 
     def joint(self, name: str) -> Joint:
         """Return the joint of that plain or scoped name.
@@ -422,6 +412,9 @@ class Model:
         """
         joint = self.joints.get(name.removeprefix(f'{self.name}::'))
         if joint is None:
-            known = ', '.join(self.joints) or 'none'
-            raise NotFoundError(f"model '{self.name}' has no joint '{name}'; its joints: {known}")
+            raise self._not_found('joint', name, self.joints)
         return joint
+
+    def _not_found(self, kind: str, name: str, known: Iterable[str]) -> NotFoundError:
+        names = ', '.join(known) or 'none'
+        return NotFoundError(f"model '{self.name}' has no {kind} '{name}'; its {kind}s: {names}")

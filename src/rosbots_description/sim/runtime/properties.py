@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from ..core import MAX_INERTIA, MAX_MASS, MIN_MASS, NotFoundError, SimError
-from ..description import Collision, Inertial
+from ..description import Collision, Inertial, LinkSpec
 from ..description.inertia import is_positive, regularised
 from .model import CollisionFrame, Link
 from .world import World
@@ -43,22 +43,15 @@ def set_friction(world: World, name: str, mu: float, mu2: float) -> None:
     def changed(collision: Collision) -> Collision:
         return replace(collision, surface=replace(collision.surface, mu=mu, mu2=mu2))
 
-    model, names = found[0].link.model, {(frame.link.name, frame.name) for frame in found}
-    model.respecify(
-        replace(
-            model.spec,
-            links=tuple(
-                replace(
-                    link,
-                    collisions=tuple(
-                        changed(one) if (link.name, one.name) in names else one
-                        for one in link.collisions
-                    ),
-                )
-                for link in model.spec.links
-            ),
+    names = {(frame.link.name, frame.name) for frame in found}
+
+    def with_friction(link: LinkSpec) -> LinkSpec:
+        collisions = (
+            changed(one) if (link.name, one.name) in names else one for one in link.collisions
         )
-    )
+        return replace(link, collisions=tuple(collisions))
+
+    found[0].link.model.change_links(with_friction)
 
 
 def set_inertial(link: Link, inertial: Inertial, gravity: bool) -> None:
@@ -74,12 +67,8 @@ def set_inertial(link: Link, inertial: Inertial, gravity: bool) -> None:
     if not model.static:
         inertial = _movable(link, inertial)
     changed = replace(link.spec, inertial=inertial, gravity=gravity)
-    model.respecify(
-        replace(
-            model.spec,
-            links=tuple(changed if spec is link.spec else spec for spec in model.spec.links),
-        )
-    )
+    before = link.spec
+    model.change_links(lambda spec: changed if spec is before else spec)
 
 
 def _movable(link: Link, inertial: Inertial) -> Inertial:

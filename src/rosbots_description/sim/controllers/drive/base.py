@@ -3,10 +3,10 @@
 import logging
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from ...core import Fault, Twist, report
-from ...description import Cylinder, Sphere
+from ...description import Cylinder, LinkSpec, Sphere
 from ...runtime import FrameTransform, Odometry, Output
 from ..controller import RUNNING, Controller, RateGate, nanoseconds, require_finite
 from ..errors import ControllerError
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _DIAGONAL = 6
 _SHORTEST, _LONGEST = 1e-6, 1e6  # of lengths [m], and of factors on them
 _AT_REST = (0.0, 0.0, 0.0)
+T = TypeVar('T')
 
 
 class DriveController(Controller):
@@ -237,10 +238,7 @@ class DriveController(Controller):
         Raises:
             ControllerError: the wheel does not exist, or is neither a cylinder nor a sphere.
         """
-        joint = self.model.joints.get(name)
-        if joint is None:
-            raise ControllerError(f"{name} couldn't be retrieved from model description")
-        link = self.model.links[joint.spec.child].spec
+        link = self._wheel_link(name)
         failed = f"Couldn't retrieve {name} wheel radius"
         if not link.collisions:
             raise ControllerError(
@@ -261,14 +259,8 @@ class DriveController(Controller):
         Raises:
             ControllerError: the model does not have one of them.
         """
-        ends = []
-        for name in (one, other):
-            joint = self.model.joints.get(name)
-            if joint is None:
-                raise ControllerError(f"{name} couldn't be retrieved from model description")
-            ends.append(self.model.links[joint.spec.child].spec.pose.position)
-        (ax, ay, _), (bx, by, _) = ends
-        return math.hypot(ax - bx, ay - by)
+        ends = (self._wheel_link(name).pose.position for name in (one, other))
+        return math.dist(*(place[:2] for place in ends))
 
     def distance(self, one: str, other: str) -> float:
         """Return the distance of the origins of two joints in their parents [m].
@@ -276,13 +268,23 @@ class DriveController(Controller):
         Raises:
             ControllerError: the URDF does not have one of them.
         """
-        ends = []
-        for name in (one, other):
-            described = self.robot.control.joints.get(name)
-            if described is None:
-                raise ControllerError(f"{name} couldn't be retrieved from model description")
-            ends.append(described.origin)
-        return math.dist(*ends)
+        joints = self.robot.control.joints
+        return math.dist(*(_described(joints, name).origin for name in (one, other)))
+
+    def _wheel_link(self, name: str) -> LinkSpec:
+        """Return the child link of a joint of the model."""
+        return self.model.links[_described(self.model.joints, name).spec.child].spec
+
+
+def _described(joints: Mapping[str, T], name: str) -> T:
+    """Return a joint by its name.
+
+    Raises:
+        ControllerError: there is none.
+    """
+    if name not in joints:
+        raise ControllerError(f"{name} couldn't be retrieved from model description")
+    return joints[name]
 
 
 def set_commands(joints: 'tuple[JointHandle, ...]', value: float) -> None:

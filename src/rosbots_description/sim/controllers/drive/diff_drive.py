@@ -92,10 +92,15 @@ class DiffDriveController(DriveController):
 
     def drive(self, linear_x: float, angular_z: float, linear_y: float) -> None:
         """Set the wheels' speeds."""
-        half = angular_z * self._separation / 2.0
+        left, right = self._speeds(linear_x, angular_z)
+        set_commands(self.left, left)
+        set_commands(self.right, right)
+
+    def _speeds(self, forward: float, yaw_rate: float) -> tuple[float, float]:
+        """Return the speeds of the wheels for a velocity [rad/s], left and right."""
+        half = yaw_rate * self._separation / 2.0
         left, right = self._radii
-        set_commands(self.left, (linear_x - half) / left)
-        set_commands(self.right, (linear_x + half) / right)
+        return (forward - half) / left, (forward + half) / right
 
     def stand(self) -> None:
         """Stop the wheels."""
@@ -109,19 +114,13 @@ class DiffDriveController(DriveController):
 
     def _report_wheels(self, output: Output[TrajectoryState], period: float) -> None:
         """Send the state of the wheels; as upstream the desired acceleration is dv * dt."""
-        forward, yaw_rate, _ = self.wanted
-        half = yaw_rate * self._separation / 2.0
-        left, right = self._radii
-        speeds = [(forward - half) / left] * len(self.left) + [(forward + half) / right] * len(
-            self.right
-        )
-        before, self._desired = (
-            self._desired,
-            [
-                (position + speed * period, speed)
-                for (position, _), speed in zip(self._desired, speeds, strict=True)
-            ],
-        )
+        left, right = self._speeds(*self.wanted[:2])
+        speeds = [left] * len(self.left) + [right] * len(self.right)
+        before = self._desired
+        self._desired = [
+            (position + speed * period, speed)
+            for (position, _), speed in zip(before, speeds, strict=True)
+        ]
         if output.wanted:
             output.send(self._wheel_state(before, period))
         self._last_speeds = [wheel.velocity for wheel in self._wheels]

@@ -15,7 +15,7 @@ from ..controller import require_finite
 from ..errors import ControllerError
 from ..hardware import POSITION, VELOCITY, JointHandle
 from ..registry import register_controller
-from .base import DriveController
+from .base import DriveController, set_commands
 
 _SLOW = 0.001  # [m/s] below which the wheels stand
 _ACROSS = math.pi / 2.0
@@ -239,8 +239,7 @@ class FourWheelSteeringController(DriveController):
 
     def stand(self) -> None:
         """Stop the wheels, and steer straight ahead."""
-        for joint in (*self.wheels, *self.steerings):
-            joint.command = 0.0
+        set_commands((*self.wheels, *self.steerings), 0.0)
         self._steering = None
 
 

@@ -7,7 +7,7 @@ Parameters are those of mecanum_drive_controller for ROS 1: the speed of a wheel
 from ..errors import ControllerError
 from ..hardware import VELOCITY, JointHandle
 from ..registry import register_controller
-from .base import DriveController
+from .base import DriveController, set_commands
 
 # Signs of the velocity to the left and of the yaw rate in the speed of each wheel.
 _WHEELS = (
@@ -69,5 +69,4 @@ class MecanumDriveController(DriveController):
 
     def stand(self) -> None:
         """Stop the wheels."""
-        for wheel in self.wheels:
-            wheel.command = 0.0
+        set_commands(self.wheels, 0.0)

@@ -99,24 +99,17 @@ class BodyMaker:
             body.fixed_roots.add(tree.links[0].name)
         index_of = self._indices(number)
         # A separate call: given an inertia as well, PyBullet would assign it to the base.
-        pybullet.changeDynamics(
-            number,
-            -1,
+        self._change(
+            Place(number, -1),
             linearDamping=tree.links[0].linear_damping,
             angularDamping=tree.links[0].angular_damping,
             maxJointVelocity=ANY_SPEED,
-            physicsClientId=self._client,
         )
         for i, (link, joint) in enumerate(zip(tree.links, tree.joints, strict=True)):
             com = compiled.inertials[i]
             part = Part(number, index_of[f'l{i}'], inverse(com), com, tuple(also))
             body.parts[link.name] = part
-            pybullet.changeDynamics(
-                number,
-                part.index,
-                localInertiaDiagonal=compiled.moments[i],
-                physicsClientId=self._client,
-            )
+            self._change(Place(number, part.index), localInertiaDiagonal=compiled.moments[i])
             contact_parts = compiled.bodies[0].contact_parts[i]
             places = [part.index, *(index_of[f'l{i}a{k}'] for k in range(1, len(contact_parts)))]
             self._set_auxiliary_inertias(number, places[1:])
@@ -172,15 +165,8 @@ class BodyMaker:
         for number, masses in bodies.items():
             for part in masses.parts:
                 # Two calls: the first one also sets moments, those of the shape.
-                pybullet.changeDynamics(
-                    number, part.link, mass=part.mass, physicsClientId=self._client
-                )
-                pybullet.changeDynamics(
-                    number,
-                    part.link,
-                    localInertiaDiagonal=part.moments,
-                    physicsClientId=self._client,
-                )
+                self._change(Place(number, part.link), mass=part.mass)
+                self._change(Place(number, part.link), localInertiaDiagonal=part.moments)
 
     def scale_link_friction(self, body: Body, link: str, factor: float) -> None:
         """Multiply the friction of each contact of a link by a factor."""
@@ -188,9 +174,7 @@ class BodyMaker:
         if factor != 1.0:
             body.friction_scales[link] = factor
         for place in body.surfaces[link]:
-            pybullet.changeDynamics(
-                *place, lateralFriction=factor * body.frictions[place], physicsClientId=self._client
-            )
+            self._change(place, lateralFriction=factor * body.frictions[place])
 
     def reset(self) -> None:
         """Remove everything."""
@@ -233,12 +217,11 @@ class BodyMaker:
 
     def _set_auxiliary_inertias(self, number: int, indices: Sequence[int]) -> None:
         for index in indices:
-            pybullet.changeDynamics(
-                number,
-                index,
-                localInertiaDiagonal=(AUXILIARY_MASS,) * 3,
-                physicsClientId=self._client,
-            )
+            self._change(Place(number, index), localInertiaDiagonal=(AUXILIARY_MASS,) * 3)
+
+    def _change(self, place: Place, **properties: object) -> None:
+        """Set dynamic properties of a link or a part."""
+        pybullet.changeDynamics(*place, **properties, physicsClientId=self._client)
 
     def _set_contact_part(
         self, body: Body, link: str, place: Place, part: CompiledContactPart | None
@@ -247,19 +230,16 @@ class BodyMaker:
         if part is None:
             return
         body.surfaces[link].append(place)
-        pybullet.changeDynamics(
-            *place,
+        self._change(
+            place,
             lateralFriction=part.friction,
             spinningFriction=0.0,
             rollingFriction=part.rolling_friction,
             restitution=part.restitution,
-            physicsClientId=self._client,
         )
         if part.restitution:
             # Else PyBullet slows a body before it touches, so that no speed is left for a bounce.
-            pybullet.changeDynamics(
-                *place, contactProcessingThreshold=0.0, physicsClientId=self._client
-            )
+            self._change(place, contactProcessingThreshold=0.0)
         self._set_filter(place, part.side)
         self._bitmasks.add(place, part.surface)
         if not is_rigid(part.surface):
@@ -275,12 +255,7 @@ class BodyMaker:
         """Set contact stiffness and damping of a compliant part for the current step size."""
         surface, rate = self._soft[place]
         stiffness, damping = contact_spring(surface, self._step_size, rate)
-        pybullet.changeDynamics(
-            *place,
-            contactStiffness=stiffness,
-            contactDamping=damping,
-            physicsClientId=self._client,
-        )
+        self._change(place, contactStiffness=stiffness, contactDamping=damping)
 
     def _parting_rate(self, place: Place) -> float:
         """Return the rate at which contacts of a part correct penetration [1/s]."""

@@ -25,6 +25,8 @@ _MAX_SLOW_CHECKS = 100  # slow checks in a row that end the correction of a body
 # Allowed growth of energy, as a share of the peak kinetic energy. Velocities and positions are half
 # a step apart, which makes the computed energy of a body vary by less than this.
 _ALLOWED_GROWTH = 0.01
+# What changes of a fast body from step to step.
+_STATE = 'peak_kinetic', 'energy_limit', 'is_airborne', 'total_energy', 'slow_checks'
 
 
 class FastBodies:
@@ -154,23 +156,12 @@ class _FastBody:
     @property
     def state(self) -> tuple[Any, ...]:
         """Return what changes from step to step."""
-        return (
-            self.peak_kinetic,
-            self.energy_limit,
-            self.is_airborne,
-            self.total_energy,
-            self.slow_checks,
-        )
+        return tuple(getattr(self, name) for name in _STATE)
 
     @state.setter
     def state(self, state: tuple[Any, ...]) -> None:
-        (
-            self.peak_kinetic,
-            self.energy_limit,
-            self.is_airborne,
-            self.total_energy,
-            self.slow_checks,
-        ) = state
+        for name, value in zip(_STATE, state, strict=True):
+            setattr(self, name, value)
 
     def limit_energy(self, step_size: float, gravity: Vector, moving: Iterable[int]) -> None:
         """Remove energy that the last step added without work."""

@@ -1,12 +1,5 @@
 """Plugins that drive a model by velocity commands; importing registers them."""
 
-from . import (  # noqa: F401
-    diff_drive,
-    force_based_move,
-    planar_move,
-    skid_steer_drive,
-    tricycle_drive,
-)
 from .base import Drive
 from .diff_drive import DiffDrive
 from .force_based_move import ForceBasedMove, RidgebackForceBasedMove

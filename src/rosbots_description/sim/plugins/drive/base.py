@@ -77,7 +77,7 @@ class Drive(PeriodicPlugin):
         super().restart()
 
     def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
-        """Set the velocity command, which holds until the next one.
+        """Set the velocity command, which holds until the next one, or until it expires.
 
         Args:
             linear_x: forward [m/s].
@@ -92,6 +92,7 @@ class Drive(PeriodicPlugin):
                 f'angular_z {angular_z}, linear_y {linear_y}'
             )
         self.target = (linear_x, linear_y, angular_z)
+        self._commanded_ns = self.world.clock.now_ns
 
 
 class WheeledDrive(Drive):
@@ -103,10 +104,6 @@ class WheeledDrive(Drive):
     absent_namespace = empty_namespace = '{}'
     topic_names: Mapping[str, str] = {**Drive.topic_names, 'joint_states': 'joint_states'}
     encoders: Encoders
-
-    def read_debug_level(self) -> None:
-        """Read the log level of the server."""
-        self.params.read('rosDebugLevel', 'na')
 
     def add_wheels(self, transforms: bool, states: bool) -> None:
         """Create the outputs of the wheel transforms, one per wheel, and of the joint states."""

@@ -31,7 +31,7 @@ class DiffDrive(WheeledDrive):
     def load(self) -> None:
         """Read all tags with upstream's defaults and in upstream's order; find the wheels."""
         params, read = self.params, self.params.read
-        self.read_debug_level()
+        read('rosDebugLevel', 'na')  # the log level of the server
         self.read_frames('base_footprint')
         # publishTf is for the odometry message and its transform, publishOdomTF for the latter.
         odometry = read('publishTf', True)

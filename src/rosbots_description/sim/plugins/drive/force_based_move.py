@@ -52,11 +52,6 @@ class ForceBasedMove(Drive):
         """Begin the odometry at the current pose; keep the command."""
         self._start = self.model.pose
 
-    def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
-        """Set the velocity command, which holds until the next one or until it expires."""
-        super().command(linear_x, angular_z, linear_y)
-        self._commanded_ns = self.world.clock.now_ns
-
     def before_each_step(self, now_ns: int) -> None:
         """Apply force and torque."""
         if (now_ns - self._commanded_ns) / NANOSECONDS > self.command_timeout:

@@ -40,11 +40,6 @@ class PlanarMove(Drive):
         """Measure the motion from the current pose on; keep the command."""
         self._measured_ns, self._measured = self.world.clock.now_ns, self.model.pose
 
-    def command(self, linear_x: float, angular_z: float, linear_y: float = 0.0) -> None:
-        """Set the velocity command, which holds until the next one or until it expires."""
-        super().command(linear_x, angular_z, linear_y)
-        self._commanded_ns = self.world.clock.now_ns
-
     def before_each_step(self, now_ns: int) -> None:
         """Set the velocity of the model."""
         if 0.0 <= self.command_timeout < (now_ns - self._commanded_ns) / NANOSECONDS:

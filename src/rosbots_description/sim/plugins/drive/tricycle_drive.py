@@ -36,7 +36,7 @@ class TricycleDrive(WheeledDrive):
         params, read = self.params, self.params.read
         # [rad/s^2] of the driven wheel for slowing down and for speeding up; 0: no limit
         self.acceleration = read('wheelAcceleration', 0.0)
-        self.read_debug_level()
+        read('rosDebugLevel', 'na')  # the log level of the server
         self.read_frames('base_link')
         self.add_odometry()
         self.set_rate(params.rate('updateRate', 100.0))

@@ -51,10 +51,7 @@ class HandOfGod(ModelPlugin):
         if min(self.stiffness, self.angular_stiffness) < 0.0:
             raise PluginError(f'{self.log_prefix}<kl> and <ka> must not be negative')
         self._inertial = spec.inertial
-        links = tuple(
-            replace(one, gravity=False) if one is spec else one for one in self.model.spec.links
-        )
-        self.model.respecify(replace(self.model.spec, links=links))
+        self.model.change_links(lambda one: replace(one, gravity=False) if one is spec else one)
         self.actual: Output[FrameTransform] = self.output('actual')
 
     def follow(self, pose: Pose) -> None:
