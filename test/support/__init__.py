@@ -1,6 +1,7 @@
 """Shared fixtures: the article's robot, small models, and worlds as context managers."""
 
 import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache, partial
@@ -65,6 +66,22 @@ def empty_world(tuning: Tuning | None = None) -> Iterator[World]:
 def urdf_spec(body: str, name: str = 'thing') -> ModelSpec:
     """Return the model of a URDF, given the text inside <robot>."""
     return load_urdf(f'<robot name="{name}">{body}</robot>', name)[0]
+
+
+def mesh_spec(path: Path, size: float = 1.0) -> ModelSpec:
+    """Write a tetrahedron of 1 m, and `size` [m] along x, as an OBJ; return a model of it."""
+    path.write_text(
+        f'v 0 0 0\nv {size} 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n'
+    )
+    mesh = f'<mesh filename="file://{path}"/>'
+    return urdf_spec(box_urdf('1 1 1', 1.0).replace('<box size="1 1 1"/>', mesh))
+
+
+def burn(seconds: float) -> None:
+    """Use processor time [s]."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
 
 
 def box_urdf(size: str, mass: float, extra: str = '') -> str:

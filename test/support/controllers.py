@@ -17,6 +17,12 @@ def arm(interface=EFFORT, change=lambda text: text):
     return change(_TEXT.replace(EFFORT, interface))
 
 
+def first_joint_only(text):
+    """Return the URDF without the transmission of the second joint."""
+    begin, end = text.index('<transmission name="joint2_trans">'), text.index('<gazebo>')
+    return text[:begin] + text[end:]
+
+
 def spawn_arm(world, interface=EFFORT, gains=None, change=lambda text: text, limits=None):
     """Spawn the arm; return it, and its controller manager."""
     model = world.spawn(arm(interface, change), name='arm')

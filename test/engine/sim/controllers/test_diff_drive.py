@@ -210,22 +210,10 @@ def test_the_states_of_wheels_are_reported_on_request(world):
     ],
 )
 def test_absurd_parameters_neither_stop_the_world_nor_make_it_diverge(path, absurd, world):
-    parameters = (
-        PARAMETERS | {path.split('/')[0]: absurd}
-        if '/' not in path
-        else PARAMETERS
-        | {
-            'linear': {
-                'x': {
-                    path.rpartition('/')[2]: absurd,
-                    'has_velocity_limits': True,
-                    'has_acceleration_limits': True,
-                    'has_jerk_limits': True,
-                }
-            }
-        }
-    )
-    robot, drive = spawned(world, parameters)
+    section, _, name = path.rpartition('/')
+    limits = {f'has_{what}_limits': True for what in ('velocity', 'acceleration', 'jerk')}
+    given = {'linear': {'x': {name: absurd} | limits}} if section else {name: absurd}
+    robot, drive = spawned(world, PARAMETERS | given)
     drive.command(1e300, 1e300)
     world.run(100)
     assert world.rebuilds == 0

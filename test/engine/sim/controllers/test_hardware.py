@@ -3,7 +3,15 @@
 import math
 
 import pytest
-from support.controllers import EFFORT, POSITION, VELOCITY, arm, spawn_arm, start_controller
+from support.controllers import (
+    EFFORT,
+    POSITION,
+    VELOCITY,
+    arm,
+    first_joint_only,
+    spawn_arm,
+    start_controller,
+)
 
 from rosbots_description.sim import PluginError
 from rosbots_description.sim.controllers import ControllerError
@@ -167,12 +175,8 @@ def test_interfaces_without_a_prefix_work_and_are_named(world, caplog):
 
 def test_missing_gains_are_an_error_as_recorded(world, caplog):
     spawn_arm(world, POSITION)
-    assert (
-        caplog.messages.count(
-            'No p gain specified for pid.  Namespace: /arm/gazebo_ros_control/pid_gains/joint1'
-        )
-        == 1
-    )
+    missing = 'No p gain specified for pid.  Namespace: /arm/gazebo_ros_control/pid_gains/joint1'
+    assert caplog.messages.count(missing) == 1
 
 
 def test_an_effort_is_clamped_to_the_limit_and_vanishes_beyond_a_stop(world):
@@ -280,16 +284,8 @@ def test_a_limp_robot_costs_no_steps(world):
 
 def test_a_mimic_joint_follows_its_leader(world):
     mimic = 'effort="60" velocity="6"/><mimic joint="joint1" multiplier="-0.5" offset="0.1"/>'
-    cut = '<transmission name="joint2_trans">'
-    model = world.spawn(
-        arm(
-            POSITION,
-            lambda text: text.replace('effort="60" velocity="6"/>', mimic).replace(
-                text[text.index(cut) : text.index('<gazebo>')], ''
-            ),
-        ),
-        name='arm',
-    )
+    urdf = first_joint_only(arm(POSITION)).replace('effort="60" velocity="6"/>', mimic)
+    model = world.spawn(urdf, name='arm')
     kind = 'position_controllers/JointPositionController'
     controller = start_controller(model, 'arm', kind, {'joint': 'joint1'})
     for wanted in (0.6, -0.4):
@@ -302,12 +298,10 @@ def test_a_mimic_joint_follows_its_leader(world):
     ('leader', 'why'), [('joint2', 'is itself'), ('nose', 'the model does not have')]
 )
 def test_a_mimic_joint_without_another_leader_is_passive(leader, why, world, caplog):
-    cut = '<transmission name="joint2_trans">'
+    limit = 'effort="60" velocity="6"/>'
     plugin = spawned(
         world,
-        lambda text: text.replace(
-            'effort="60" velocity="6"/>', f'effort="60" velocity="6"/><mimic joint="{leader}"/>'
-        ).replace(text[text.index(cut) : text.index('<gazebo>')], ''),
+        lambda text: first_joint_only(text).replace(limit, f'{limit}<mimic joint="{leader}"/>'),
     )
     world.run(50)
     assert f"joint 'joint2' mimics '{leader}', which {why}; it is passive" in caplog.messages

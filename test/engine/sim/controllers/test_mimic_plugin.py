@@ -1,7 +1,7 @@
 """The mimic plugin of roboticsgroup: a joint follows another one."""
 
 import pytest
-from support.controllers import EFFORT, arm, start_controller
+from support.controllers import EFFORT, arm, first_joint_only, start_controller
 
 LIBRARIES = [
     'libroboticsgroup_gazebo_mimic_joint_plugin.so',
@@ -11,7 +11,6 @@ TAGS = (
     '<joint>joint1</joint><mimicJoint>joint2</mimicJoint><multiplier>-0.5</multiplier>'
     '<offset>0.1</offset>'
 )
-CUT = '<transmission name="joint2_trans">'
 
 
 def spawned(world, tags=TAGS, library=LIBRARIES[0]):
@@ -20,9 +19,7 @@ def spawned(world, tags=TAGS, library=LIBRARIES[0]):
     bot = world.spawn(
         arm(
             EFFORT,
-            lambda text: text.replace(text[text.index(CUT) : text.index('<gazebo>')], '').replace(
-                '</gazebo>\n</robot>', extra
-            ),
+            lambda text: first_joint_only(text).replace('</gazebo>\n</robot>', extra),
         ),
         name='arm',
     )

@@ -13,7 +13,7 @@ from contextlib import closing
 from dataclasses import replace
 
 import pytest
-from support import box_urdf, robot_spec, urdf_spec
+from support import box_urdf, burn, mesh_spec, robot_spec, urdf_spec
 
 from rosbots_description.sim.core import Fault, process_watch, report
 from rosbots_description.sim.core.errors import ModelError
@@ -33,6 +33,12 @@ from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
 
 CRATE = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
+MASS = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
+DIVERGING = ModelSpec(
+    'wide',
+    (LinkSpec('near', inertial=MASS), LinkSpec('far', Pose((1e150, 0.0, 0.0)), MASS)),
+    (JointSpec('joint', REVOLUTE, 'near', 'far'),),
+)
 SHORT = 0.3  # [s] for a model that does not finish
 LONG = 50.0  # [s] never reached
 
@@ -89,13 +95,6 @@ class Sandbox:
         self._sandbox.require(model, PhysicsSettings(), **options)
 
 
-def burn(seconds):
-    """Use `seconds` of processor time."""
-    end = time.process_time() + seconds
-    while time.process_time() < end:
-        pass
-
-
 def allow(monkeypatch, processor):
     """Allow a test `processor` seconds of processor time, for any model."""
     monkeypatch.setattr(crash_sandbox, 'MIN_ALLOWANCE', processor)
@@ -142,7 +141,13 @@ def test_equal_content_is_tested_once_whatever_its_name_and_visuals():
         assert sandbox.trials == 1
         (link,) = CRATE.links
         sandbox.require(
-            replace(CRATE, name='other', location='elsewhere', links=(replace(link, visuals=()),))
+            replace(
+                CRATE,
+                name='other',
+                location='elsewhere',
+                left_out=('a plugin',),
+                links=(replace(link, visuals=()),),
+            )
         )
         assert sandbox.trials == 1
         heavier = replace(link, inertial=replace(link.inertial, mass=3.0))
@@ -150,33 +155,11 @@ def test_equal_content_is_tested_once_whatever_its_name_and_visuals():
         assert sandbox.trials == 2
 
 
-def mesh_spec(source):
-    return urdf_spec(
-        box_urdf('1 1 1', 2.0).replace('<box size="1 1 1"/>', f'<mesh filename="file://{source}"/>')
-    )
-
-
 def test_mesh_is_identified_by_the_content_of_its_file(tmp_path):
-    source = tmp_path / 'part.stl'
     with Sandbox() as sandbox:
-        for height in (1.0, 1.0, 2.0):
-            source.write_text(tetrahedron(height))
-            sandbox.require(mesh_spec(source))
+        for size in (1.0, 1.0, 2.0):
+            sandbox.require(mesh_spec(tmp_path / 'part.obj', size))
         assert sandbox.trials == 2
-
-
-def tetrahedron(height):
-    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, height)]
-    faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-    loops = (
-        ''.join(f'vertex {x} {y} {z}\n' for x, y, z in map(corners.__getitem__, face))
-        for face in faces
-    )
-    return (
-        'solid t\n'
-        + ''.join(f'facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n' for loop in loops)
-        + 'endsolid t\n'
-    )
 
 
 def test_oldest_accepted_contents_are_forgotten_first(monkeypatch):
@@ -219,14 +202,13 @@ def test_model_that_blocks_the_engine_is_rejected(monkeypatch):
 
 @pytest.mark.parametrize('share', ['PER_PART', 'PER_BYTE'])
 def test_time_limit_grows_with_the_size_of_the_model(share, monkeypatch, tmp_path):
-    source = tmp_path / 'part.stl'
-    source.write_text(tetrahedron(1.0))
+    spec = mesh_spec(tmp_path / 'part.obj')
     with Sandbox(does=lambda: burn(2.0 * SHORT)) as sandbox:
         allow(monkeypatch, SHORT)
         with pytest.raises(ModelError, match='of processor time'):
-            sandbox.require(mesh_spec(source))
+            sandbox.require(spec)
         monkeypatch.setattr(crash_sandbox, share, LONG)
-        sandbox.require(mesh_spec(source))
+        sandbox.require(spec)
 
 
 def test_sandbox_makes_twenty_steps(monkeypatch):
@@ -299,11 +281,8 @@ def test_model_that_ends_the_process_is_rejected():
 
 
 def test_model_that_diverges_at_once_is_rejected():
-    heavy = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
-    links = (LinkSpec('near', inertial=heavy), LinkSpec('far', Pose((1e150, 0.0, 0.0)), heavy))
-    spec = ModelSpec('wide', links, (JointSpec('joint', REVOLUTE, 'near', 'far'),))
     with pytest.raises(ModelError, match='its pose or velocity was not finite'):
-        passes(spec)
+        passes(DIVERGING)
 
 
 def test_rejected_model_is_tested_again():
@@ -340,14 +319,11 @@ def test_model_is_accepted_with_a_warning_if_no_process_can_be_made(caplog, monk
 
 
 def test_killed_sandbox_is_started_again_and_still_rejects(caplog):
-    heavy = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
-    links = (LinkSpec('near', inertial=heavy), LinkSpec('far', Pose((1e150, 0.0, 0.0)), heavy))
-    diverging = ModelSpec('wide', links, (JointSpec('joint', REVOLUTE, 'near', 'far'),))
     with Sandbox() as sandbox:
         os.kill(sandbox.process, signal.SIGKILL)
         sandbox.require()
         with pytest.raises(ModelError, match='its pose or velocity was not finite'):
-            sandbox.require(diverging)
+            sandbox.require(DIVERGING)
     assert caplog.messages == [
         'the process crash_sandbox has ended (killed by signal 9); it is started again'
     ]
@@ -397,10 +373,8 @@ def test_lack_of_file_descriptors_is_reported(spare):
 
 
 def test_error_names_a_folder_in_the_place_of_a_mesh_file(tmp_path):
-    source = tmp_path / 'part.stl'
-    source.write_text(tetrahedron(1.0))
     with Sandbox() as sandbox:
-        model = sandbox.engine.compile(mesh_spec(source))
+        model = sandbox.engine.compile(mesh_spec(tmp_path / 'part.obj'))
         (file,) = model.files
         os.unlink(file)
         os.mkdir(file)

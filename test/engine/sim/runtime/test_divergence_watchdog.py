@@ -1,4 +1,4 @@
-"""Divergence of any link is detected soon, also after a change of the step size."""
+"""Divergence of any link is detected soon, and affects no other model."""
 
 import math
 from dataclasses import replace
@@ -6,10 +6,12 @@ from dataclasses import replace
 import pytest
 from support import box_urdf, empty_world, urdf_spec
 
+from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, Twist
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.runtime.divergence_watchdog import PERIOD
 
+BOX = urdf_spec(box_urdf('1 1 1', 1.0))
 CRANE = """<link name="world"/>
   <link name="arm"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
@@ -40,7 +42,7 @@ def test_models_are_checked_at_once_after_a_change_of_the_step_size(world, caplo
     usual = world.physics
     world.run(PERIOD // 2)
     world.set_physics(replace(usual, step_size=step_size))
-    box = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0.0, 0.0, 0.5)))
+    box = world.spawn(BOX, 'box', Pose((0.0, 0.0, 0.5)))
     world.run(5)
     world.set_physics(usual)
     box.set_twist(Twist((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)))
@@ -65,3 +67,27 @@ def test_soft_contacts_do_not_depend_on_when_the_step_size_was_set(first, then):
             return info, box.state()
 
     assert dropped(early=True) == dropped(early=False)
+
+
+@pytest.mark.parametrize(
+    'lose',
+    [
+        lambda model: model.set_pose(Pose((1e308, 0.0, 0.5))),
+        lambda model: model.set_twist(Twist((1e308, 0.0, 0.0), (0.0, 0.0, 0.0))),
+    ],
+)
+def test_diverged_model_deleted_before_its_detection_affects_no_other(world, lose):
+    neighbour = world.spawn(BOX, 'neighbour', Pose((5.0, 0.0, 0.5)))
+    diverged = world.spawn(BOX, 'diverged', Pose((0.0, 0.0, 0.5)))
+    lose(diverged)
+    world.run(3)
+    world.delete('diverged')
+    world.run(500)
+    assert neighbour.state()[0].position == pytest.approx((5.0, 0.0, 0.5), abs=1e-3)
+
+
+@pytest.mark.parametrize('x', [1e9, -1e308, float('inf'), float('nan')])
+def test_spawn_at_an_extreme_position_is_rejected(world, x):
+    with pytest.raises(ModelError, match='m away; less than 1e'):
+        world.spawn(BOX, 'far', Pose((x, 0.0, 0.5)))
+    assert 'far' not in world.models

@@ -44,21 +44,19 @@ def test_two_worlds_are_bit_identical():
     assert fresh_drive() == fresh_drive()
 
 
-def test_readers_of_outputs_do_not_change_the_motion(world):
-    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+def test_readers_of_outputs_do_not_change_the_motion(world, robot):
     found = []
-    for output in next(iter(model.plugins.values())).outputs.values():
+    for output in robot.plugin('diff_drive').outputs.values():
         output.connect(found.append)
-    assert drive_and_hash(world, model) == fresh_drive()
+    assert drive_and_hash(world, robot) == fresh_drive()
     assert len(found) > 2 * 200  # of 2 s at 100 Hz
 
 
-def test_motion_after_reset_simulation_is_bit_identical(world):
-    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-    first = drive_and_hash(world, model)
+def test_motion_after_reset_simulation_is_bit_identical(world, robot):
+    first = drive_and_hash(world, robot)
     world.reset_simulation()
     assert world.clock.now_ns == 0
-    assert drive_and_hash(world, model) == first
+    assert drive_and_hash(world, robot) == first
 
 
 def test_another_process_with_another_kernel_is_bit_identical():

@@ -33,14 +33,13 @@ def resident_bytes():
     return pages * 4096
 
 
-def test_the_robot_has_gazebos_links_and_mass(world):
-    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-    assert [link.scoped_name for link in model.links.values()] == [
+def test_the_robot_has_gazebos_links_and_mass(robot):
+    assert [link.scoped_name for link in robot.links.values()] == [
         'rosbots::base_footprint',
         'rosbots::wheel_left_link',
         'rosbots::wheel_right_link',
     ]
-    assert sum(link.inertial.mass for link in model.spec.links) == pytest.approx(1.4)
+    assert sum(link.inertial.mass for link in robot.spec.links) == pytest.approx(1.4)
 
 
 def test_order_of_a_step_is_time_hooks_physics(world):
@@ -58,22 +57,21 @@ def test_order_of_a_step_is_time_hooks_physics(world):
     assert model.pose.position[2] < 5.0
 
 
-def test_reset_world_resets_poses_and_keeps_time_and_joint_angles(world):
-    model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+def test_reset_world_resets_poses_and_keeps_time_and_joint_angles(world, robot):
     world.run(SETTLED)
-    next(iter(model.plugins.values())).command(0.5, 0.0)
+    robot.plugin('diff_drive').command(0.5, 0.0)
     world.run(2000)
-    angle = model.joint('wheel_left_joint').position
+    angle = robot.joint('wheel_left_joint').position
     world.reset_world()
     assert world.clock.steps == SETTLED + 2000
-    assert model.pose.position == pytest.approx(SPAWN_POSE.position)
-    assert model.twist.linear == pytest.approx((0.0, 0.0, 0.0))
+    assert robot.pose.position == pytest.approx(SPAWN_POSE.position)
+    assert robot.twist.linear == pytest.approx((0.0, 0.0, 0.0))
     assert angle > 1.0
-    assert model.joint('wheel_left_joint').position == pytest.approx(angle)
+    assert robot.joint('wheel_left_joint').position == pytest.approx(angle)
     world.run(SETTLED)
-    standing = model.pose.position
+    standing = robot.pose.position
     world.run(1000)
-    assert math.dist(standing, model.pose.position) < 1e-3  # the command is cleared
+    assert math.dist(standing, robot.pose.position) < 1e-3  # the command is cleared
 
 
 def test_repeated_spawns_and_deletions_do_not_leak_memory(world):

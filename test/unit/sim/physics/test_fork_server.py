@@ -15,13 +15,14 @@ import time
 from functools import partial
 
 import pytest
+from support import burn
+from support.patience import wait_until
 
 from rosbots_description.sim.physics import fork_server
 from rosbots_description.sim.physics.fork_server import MAX_REPORT, Cancelled, ForkServer, Killed
 
 ALLOWANCE = 20.0  # [s] never reached
 SHORT = 0.3  # [s]
-DEADLINE = 60.0  # [s]
 BUSY = 10  # busy processes beside a test
 
 
@@ -41,20 +42,6 @@ def outcome(work, payload=b'', allowance=ALLOWANCE):
             return server.run(payload, allowance)
         except Killed as killed:
             return killed.exit_code
-
-
-def burn(seconds):
-    """Use `seconds` of processor time."""
-    end = time.process_time() + seconds
-    while time.process_time() < end:
-        pass
-
-
-def wait_until(condition):
-    deadline = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
 
 
 def exists(process):

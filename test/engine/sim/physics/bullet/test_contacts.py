@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from support import SPAWN_POSE, box_urdf, robot_spec, urdf_spec
+from support import box_urdf, urdf_spec
 
 from rosbots_description.sim.core.transforms import Pose, Twist
 
@@ -67,8 +67,7 @@ def test_contacts_name_the_collisions_and_balance_the_weight(world):
     assert sorted(c.position for c in everywhere) == sorted(c.position for c in contacts)
 
 
-def test_wheels_and_caster_of_the_robot_carry_its_weight(world):
-    robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+def test_wheels_and_caster_of_the_robot_carry_its_weight(world, robot):
     world.run(2500)
     contacts = world.engine.contacts(robot.body)
     mass = sum(link.spec.inertial.mass for link in robot.links.values())
@@ -149,8 +148,7 @@ def test_joint_reaction_balances_the_child(world, lift):
     assert engine.joint_reaction(body, 'shoulder').force == (0.0, 0.0, 0.0)
 
 
-def test_reaction_of_a_wheel_joint_is_its_load(world):
-    robot = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
+def test_reaction_of_a_wheel_joint_is_its_load(world, robot):
     joint = next(j for j in robot.joints.values() if j.spec.child == 'wheel_left_link')
     world.engine.measure_reaction(robot.body, joint.name)
     world.run(2500)

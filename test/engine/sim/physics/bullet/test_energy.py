@@ -1,6 +1,8 @@
 """Free rotation conserves energy at any speed; no system gains energy."""
 
 import math
+from contextlib import closing
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -87,8 +89,7 @@ def chain(count, length, mass=1.0, hangs=True):
 
 def share_kept(spec, velocity, seconds, **settings):
     """Return the least and the greatest share of its initial energy of a flying model."""
-    world = World(PhysicsSettings(**settings))
-    try:
+    with closing(World(PhysicsSettings(**settings))) as world:
         model = world.spawn(spec, 'model', HIGH)
         model.set_twist(Twist((1.0, 2.0, 3.0), velocity))
         shares = [energies(model)[1]]
@@ -96,8 +97,6 @@ def share_kept(spec, velocity, seconds, **settings):
         for _ in range(round(seconds / 0.05)):
             world.run(steps)
             shares.append(energies(model)[1])
-    finally:
-        world.close()
     return min(shares) / shares[0], max(shares) / shares[0]
 
 
@@ -139,8 +138,7 @@ def test_tumbling_robot_keeps_its_energy(velocity):
 
 def swing(spec, seconds):
     """Return the changes of the total energy [J], and the greatest speed of a link [m/s]."""
-    world = World()
-    try:
+    with closing(World()) as world:
         model = world.spawn(spec, 'model', Pose())
         start = energies(model)[0]
         changes, fastest = [], 0.0
@@ -150,8 +148,6 @@ def swing(spec, seconds):
             fastest = max(
                 fastest, *(math.hypot(*link.twist.linear) for link in model.links.values())
             )
-    finally:
-        world.close()
     return changes, fastest
 
 
@@ -179,15 +175,8 @@ def test_single_pendulum_keeps_its_amplitude():
 
 def test_thrown_chain_gains_no_speed(world):
     spec = chain(30, 0.1, hangs=False)
-    links = tuple(
-        LinkSpec(
-            link.name,
-            link.pose,
-            link.inertial,
-            (Collision('ball', Box((0.08, 0.04, 0.04)), Pose((0.05, 0.0, 0.0))),),
-        )
-        for link in spec.links
-    )
+    shape = Collision('ball', Box((0.08, 0.04, 0.04)), Pose((0.05, 0.0, 0.0)))
+    links = tuple(replace(link, collisions=(shape,)) for link in spec.links)
     model = world.spawn(ModelSpec('chain', links, spec.joints), 'chain', Pose((0, 0, 2.0)))
     model.set_twist(Twist((0.0, 0.0, 3.0), (1.0, 8.0, 0.0)))
     start = energies(model)[0]

@@ -1,6 +1,7 @@
 """Springs and dampers of joints obey mechanics at any stiffness and damping."""
 
 import math
+from contextlib import closing
 
 import pytest
 from support import urdf_spec
@@ -34,8 +35,7 @@ def weight(mass, inertia=1.0, **joint):
 
 def states(spec, steps, velocity=0.0, **physics):
     """Return the state of the joint after each step."""
-    world = World(PhysicsSettings(**physics))
-    try:
+    with closing(World(PhysicsSettings(**physics))) as world:
         model = world.spawn(spec, 'weight', HIGH)
         (joint,) = model.joints.values()
         if velocity:
@@ -45,8 +45,6 @@ def states(spec, steps, velocity=0.0, **physics):
             world.run(1)
             found.append(joint.state())
         return found
-    finally:
-        world.close()
 
 
 @pytest.mark.parametrize(
@@ -115,15 +113,12 @@ def test_floating_chain_with_springs_is_stable(stiffness, damping, count):
         )
         for i in range(1, count)
     )
-    world = World(PhysicsSettings(gravity=(0.0, 0.0, 0.0)))
-    try:
+    with closing(World(PhysicsSettings(gravity=(0.0, 0.0, 0.0)))) as world:
         model = world.spawn(ModelSpec('chain', links, joints), 'chain', HIGH)
         model.set_twist(Twist((0.0, 0.0, 0.0), (0.0, 0.3, 0.2)))
         for _ in range(50):
             world.run(100)
             assert all(abs(joint.velocity) < 2.0 for joint in model.joints.values())
-    finally:
-        world.close()
 
 
 def carriage(mass, stiffness, damping):

@@ -152,21 +152,6 @@ def test_files_exist_as_long_as_their_model(tmp_path, meshes):
     assert not path.exists()
 
 
-def test_content_does_not_depend_on_names_visuals_and_pose(meshes):
-    spec = urdf_spec(box_urdf('1 1 1', 2.0), 'crate')
-    (link,) = spec.links
-    other = replace(
-        spec,
-        name='other',
-        location='elsewhere',
-        left_out=('a plugin',),
-        links=(replace(link, visuals=()),),
-    )
-    assert repr(compile_model(spec, meshes).bare()) == repr(compile_model(other, meshes).bare())
-    heavier = replace(spec, links=(replace(link, inertial=replace(link.inertial, mass=3.0)),))
-    assert repr(compile_model(spec, meshes).bare()) != repr(compile_model(heavier, meshes).bare())
-
-
 def test_fixed_joints_count_as_joints(meshes):
     spec = chain(size_limits.MAX_JOINTS + 1)
     with pytest.raises(ModelError, match='more than 127 joints'):

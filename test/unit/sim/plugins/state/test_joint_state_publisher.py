@@ -4,7 +4,6 @@ import pytest
 from support.fake_drive import collect, fake_model, make_drive, run, turn
 
 from rosbots_description.sim.plugins.state.joint_state_publisher import JointStatePublisher
-from rosbots_description.sim.runtime.scheduler import NEVER
 
 PREFIX = 'GazeboRosJointStatePublisher Plugin (ns = robot/) '
 
@@ -39,10 +38,6 @@ def test_the_mean_rate_is_exact_and_the_first_reading_a_step_late(rate, steps):
     plugin.joint_states.connect(lambda _: found.append(plugin.world.clock.steps))
     run(plugin, 210)
     assert found[:4] == steps
-
-
-def test_plugin_without_readers_is_not_due():
-    assert make(jointName='left').due == NEVER
 
 
 def test_missing_tag_is_logged_with_its_default(caplog):

@@ -19,7 +19,6 @@ from rosbots_description.sim.core.transforms import (
     subtract,
 )
 from rosbots_description.sim.plugins.state.p3d import P3D
-from rosbots_description.sim.runtime.scheduler import NEVER
 
 TILTED = Pose((1.0, 2.0, 3.0), from_rpy(0.3, -0.4, 0.5))
 MOVING = Twist((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
@@ -95,16 +94,6 @@ def test_first_reading_is_immediate_and_then_one_per_started_period(rate, steps)
     plugin.odometry.connect(lambda _: found.append(plugin.world.clock.steps - begin))
     run(plugin, 140)
     assert found[:5] == steps
-
-
-def test_plugin_without_readers_is_not_due():
-    plugin = make()
-    assert plugin.due == NEVER
-    readings = collect(plugin.odometry)
-    run(plugin, 2)
-    assert len(readings) == 2
-    plugin.odometry.disconnect(readings.append)
-    assert plugin.due == NEVER
 
 
 @pytest.mark.parametrize('frame', ['world', '/world', 'map', '/map'])
