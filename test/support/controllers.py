@@ -41,6 +41,24 @@ def sampled(rows, time, column):
     return before[column] + share * (after[column] - before[column])
 
 
+def aligned(rows, recorded, column, begin):
+    """Return the times of recorded values in `rows`, moved back by what fits best, at most 11 ms.
+
+    Args:
+        recorded: pairs of time and value of a column.
+        begin: the least time [s].
+    """
+
+    def moved(shift):
+        return [max(begin, time - shift / 1000.0) for time, _ in recorded]
+
+    def difference(times):
+        pairs = zip(recorded, times, strict=True)
+        return sum(abs(value - sampled(rows, time, column)) for (_, value), time in pairs)
+
+    return min(map(moved, range(12)), key=difference)
+
+
 def start_controller(model, name, kind, parameters):
     """Load and start a controller of a type; return it."""
     manager = model.plugin('gazebo_ros_control').manager

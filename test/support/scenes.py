@@ -4,11 +4,11 @@ The engine's settings were chosen by these (benchmark/physics.py); tests bound t
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy, yaw_of
-from rosbots_description.sim.description.model_spec import ModelSpec, Sphere
+from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy, rotate, yaw_of
+from rosbots_description.sim.description.model_spec import Element, ModelSpec, Sphere
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.model import Model
 from rosbots_description.sim.runtime.world import World
@@ -116,6 +116,24 @@ def castered(
         acceleration=acceleration,
     )
     return urdf_spec(body)
+
+
+def tilted_floor(world: World, roll: float = 0.0, pitch: float = 0.0) -> Pose:
+    """Replace the ground by a large board tilted by angles [rad]; return its upper frame."""
+    tilt = from_rpy(roll, pitch, 0.0)
+    board = replace(urdf_spec(box('board', (60.0, 60.0, 1.0), 1.0)), static=True)
+    world.delete('ground_plane')
+    world.spawn(board, 'board', Pose(rotate(tilt, (0.0, 0.0, -0.5)), tilt))
+    return Pose(orientation=tilt)
+
+
+def with_tags(
+    spec: ModelSpec, change: Callable[[Sequence[Element]], Iterable[Element]]
+) -> ModelSpec:
+    """Return a model whose only plugin has other tags."""
+    (plugin,) = spec.plugins
+    element = replace(plugin.element, children=tuple(change(plugin.element.children)))
+    return replace(spec, plugins=(replace(plugin, element=element),))
 
 
 def forward_speed(model: Model) -> float:

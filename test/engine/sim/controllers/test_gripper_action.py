@@ -30,11 +30,8 @@ def test_a_goal_succeeds_within_its_tolerance(interface, world):
     goal.done.connect(done.append)
     world.run(1000)
     assert done == [goal]
-    assert (goal.status, goal.result.reached_goal, goal.result.stalled) == (
-        'succeeded',
-        True,
-        False,
-    )
+    assert goal.status == 'succeeded'
+    assert (goal.result.reached_goal, goal.result.stalled) == (True, False)
     assert goal.result.position == pytest.approx(0.05, abs=0.01)
 
 

@@ -8,6 +8,7 @@ from support.controllers import (
     POSITION,
     RECORDED,
     VELOCITY,
+    aligned,
     sampled,
     spawn_arm,
     start_controller,
@@ -26,6 +27,7 @@ REST = 0.0, 0.0
 PATH = 0.005  # [rad] greatest distance from the recorded path
 PARAMETERS = RECORDED['jtc_position']['controller']
 TYPES = {EFFORT: 'effort', POSITION: 'position', VELOCITY: 'velocity'}
+NUMBER = 'Trajectory message contains a number'
 STATES = {3: 'succeeded', 4: 'aborted'}  # of actionlib
 
 
@@ -75,15 +77,8 @@ def test_the_recorded_goals_have_the_recorded_path_and_result(name, world):
             return
         there = [row for row in scene['trace'] if begin <= row[0] <= begin + 2.4]
         # When the recorded goal was taken is known to the period of the action server only.
-        off = min(
-            range(12),
-            key=lambda shift: sum(
-                abs(row[1] - sampled(rows, max(0.0, row[0] - begin - shift / 1000.0), 0))
-                for row in there
-            ),
-        )
-        for row in there:
-            time = max(0.0, row[0] - begin - off / 1000.0)
+        times = aligned(rows, [(row[0] - begin, row[1]) for row in there], 0, 0.0)
+        for row, time in zip(there, times, strict=True):
             for joint in (0, 1):
                 assert sampled(rows, time, joint) == pytest.approx(row[1 + joint], abs=PATH)
 
@@ -222,18 +217,10 @@ def test_an_end_out_of_tolerance_aborts_after_the_goal_time(world):
             -1,
             'Trajectory message contains waypoints that are not strictly increasing in time.',
         ),
-        (
-            goal((1.0, (math.nan, 0.0))),
-            -1,
-            'Trajectory message contains a number that is not finite.',
-        ),
-        (
-            goal((math.inf, (0.0, 0.0))),
-            -1,
-            'Trajectory message contains a number that is not finite.',
-        ),
-        (goal((1e200, (0.0, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
-        (goal((1.0, (1e300, 0.0))), -1, 'Trajectory message contains a number beyond 1e+09.'),
+        (goal((1.0, (math.nan, 0.0))), -1, f'{NUMBER} that is not finite.'),
+        (goal((math.inf, (0.0, 0.0))), -1, f'{NUMBER} that is not finite.'),
+        (goal((1e200, (0.0, 0.0))), -1, f'{NUMBER} beyond 1e+09.'),
+        (goal((1.0, (1e300, 0.0))), -1, f'{NUMBER} beyond 1e+09.'),
         (
             goal((1.0, (1.0, 0.0, 0.0))),
             -1,

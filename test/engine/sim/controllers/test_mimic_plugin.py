@@ -68,25 +68,16 @@ def test_a_joint_that_is_close_enough_is_left_alone(world):
 @pytest.mark.parametrize(
     ('tags', 'text'),
     [
-        ('', 'No joint element present. MimicJointPlugin could not be loaded.'),
-        (
-            '<joint>joint1</joint>',
-            'No mimicJoint element present. MimicJointPlugin could not be loaded.',
-        ),
-        (
-            '<joint>nose</joint><mimicJoint>joint2</mimicJoint>',
-            'No joint named "nose". MimicJointPlugin could not be loaded.',
-        ),
+        ('', 'No joint element present.'),
+        ('<joint>joint1</joint>', 'No mimicJoint element present.'),
+        ('<joint>nose</joint><mimicJoint>joint2</mimicJoint>', 'No joint named "nose".'),
+        ('<joint>joint1</joint><mimicJoint>nose</mimicJoint>', 'No (mimic) joint named "nose".'),
         (
             '<joint>joint2</joint><mimicJoint>joint2</mimicJoint>',
             'Joint "joint2" is to mimic itself; name another one in <joint>.',
-        ),
-        (
-            '<joint>joint1</joint><mimicJoint>nose</mimicJoint>',
-            'No (mimic) joint named "nose". MimicJointPlugin could not be loaded.',
         ),
     ],
 )
 def test_a_missing_joint_gets_upstreams_words(tags, text, world, caplog):
     spawned(world, tags)
-    assert text in caplog.text
+    assert f'{text} MimicJointPlugin could not be loaded.' in caplog.text

@@ -1,11 +1,10 @@
 """Controllers of joints move an arm as they were recorded in Gazebo."""
 
 import pytest
-from support.controllers import RECORDED, sampled, spawn_arm
+from support.controllers import RECORDED, aligned, sampled, spawn_arm
 
 from rosbots_description.sim import World
 
-LATEST = 12  # steps by which a recorded command took effect late
 RISE, OVERSHOOT, END = 0.03, 0.03, 0.01  # relative differences
 HALF_ROW = 0.001  # [s] resolution of a rise in rows that are 10 ms apart
 
@@ -74,19 +73,10 @@ def responses(traces, name, number, joint):
     end = later[0] if later else scene['trace'][-1][0]
     rows = [row for row in scene['trace'] if begin <= row[0] <= end - 0.001]
     ours = traces[name]
+    times, theirs = [row[0] for row in rows], [row[1 + joint] for row in rows]
     # The time at which the recorded command took effect is known to a row only.
-    off = min(
-        range(LATEST),
-        key=lambda shift: sum(
-            abs(row[1 + joint] - sampled(ours, max(begin, row[0] - shift / 1000.0), joint))
-            for row in rows
-        ),
-    )
-    times = [row[0] for row in rows]
-    return (
-        Step(times, [row[1 + joint] for row in rows]),
-        Step(times, [sampled(ours, max(begin, t - off / 1000.0), joint) for t in times]),
-    )
+    then = aligned(ours, list(zip(times, theirs, strict=True)), joint, begin)
+    return Step(times, theirs), Step(times, [sampled(ours, time, joint) for time in then])
 
 
 @pytest.mark.parametrize(('name', 'number', 'joint'), STEPS)

@@ -22,19 +22,24 @@ STILL = 0.005  # [m]
 UPRIGHT = 0.9999  # cosine of the tilt
 
 
+def opened(folder, models):
+    """Return a world of models on the ground, from a file."""
+    path = folder / 'w.world'
+    path.write_text(
+        '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
+        f'</include>{models}</world></sdf>',
+        encoding='utf-8',
+    )
+    return World.from_file(path)
+
+
 def test_they_stand(tmp_path):
     included = ''.join(
         f'<include><uri>model://{name}</uri><name>{name}</name><pose>{4 * i} 0 '
         f'{0.15 if name == "cardboard_box" else 0} 0 0 0</pose></include>'
         for i, name in enumerate(NAMES)
     )
-    path = tmp_path / 'w.world'
-    path.write_text(
-        '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
-        f'</include>{included}</world></sdf>',
-        encoding='utf-8',
-    )
-    with World.from_file(path) as world:
+    with opened(tmp_path, included) as world:
         world.run(seconds=1.0)
         for i, name in enumerate(NAMES):
             pose = world.model(name).pose
@@ -61,13 +66,7 @@ def test_the_mesh_files_that_a_saved_world_names_are_solid(tmp_path):
             ('cone', 0, '5 0 0', cone),
         )
     )
-    path = tmp_path / 'w.world'
-    path.write_text(
-        '<sdf version="1.6"><world name="w"><include><uri>model://ground_plane</uri>'
-        f'</include>{models}</world></sdf>',
-        encoding='utf-8',
-    )
-    with World.from_file(path) as world:
+    with opened(tmp_path, models) as world:
         world.run(seconds=1.0)
         assert world.model('ball').pose.position == pytest.approx((1.0, 0.0, 3.1), abs=STILL)
         cone = world.model('cone').pose

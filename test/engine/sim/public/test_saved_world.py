@@ -53,13 +53,8 @@ def farthest(one, other):
 def require_same(world, other):
     assert list(other.models) == list(world.models)
     assert poses(other) == poses(world)
-    assert (other.time, other.physics, other.scene, other.lights, other.name) == (
-        world.time,
-        world.physics,
-        world.scene,
-        world.lights,
-        world.name,
-    )
+    for what in ('time', 'physics', 'scene', 'lights', 'name'):
+        assert getattr(other, what) == getattr(world, what)
     for model in world.models.values():
         there = other.models[model.name]
         assert there.initial_pose == model.initial_pose

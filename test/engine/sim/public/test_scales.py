@@ -12,7 +12,8 @@ PENDULUM = """<robot name="pendulum"><link name="world"/><link name="rod"><inert
 <origin xyz="0 0 -1"/><mass value="2"/>
 <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="hinge" type="revolute"><parent link="world"/><child link="rod"/><axis xyz="0 1 0"/>
-<limit lower="-3" upper="3" effort="100" velocity="100"/>{}</joint></robot>"""
+<limit lower="-3" upper="3" effort="100" velocity="100"/><dynamics damping="0" friction="0"/>
+</joint><gazebo reference="hinge"><springStiffness>80</springStiffness></gazebo></robot>"""
 
 
 def pushed(factor, force=10.0):
@@ -52,14 +53,7 @@ def test_sliding_distance_is_inverse_to_friction(factor):
 def test_heavier_pendulum_on_a_spring_swings_slower():
     def zero_crossing(factor):
         with World(PhysicsSettings(gravity=(0.0, 0.0, 0.0))) as world:
-            joint = '<dynamics damping="0" friction="0"/>'
-            rod = world.spawn(
-                PENDULUM.format(joint).replace(
-                    '</robot>',
-                    """<gazebo reference="hinge">
-<springStiffness>80</springStiffness></gazebo></robot>""",
-                )
-            )
+            rod = world.spawn(PENDULUM)
             rod.scale_mass(factor)
             hinge = rod.joint('hinge')
             hinge.set_position(0.3)

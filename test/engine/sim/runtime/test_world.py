@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from support import SETTLED, SPAWN_POSE, box_urdf, robot_spec, urdf_spec
+from support.scenes import with_tags
 
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 from rosbots_description.sim.core.transforms import Pose
@@ -23,6 +24,7 @@ from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 from rosbots_description.sim.runtime.scheduler import Hook
 
+BOX = urdf_spec(box_urdf('1 1 1', 1.0))
 MEGABYTE = 2**20
 LEAK_ALLOWED = 6 * MEGABYTE  # 14 without the rebuild
 CYCLES = 200
@@ -50,7 +52,7 @@ def test_order_of_a_step_is_time_hooks_physics(world):
             seen.append((world.clock.steps, model.pose.position[2]))
 
     seen = []
-    model = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((0, 0, 5.0)))
+    model = world.spawn(BOX, 'box', Pose((0, 0, 5.0)))
     world.schedule.add(Watch())
     world.run(1)
     assert seen == [(1, 5.0)]
@@ -75,7 +77,7 @@ def test_reset_world_resets_poses_and_keeps_time_and_joint_angles(world, robot):
 
 
 def test_repeated_spawns_and_deletions_do_not_leak_memory(world):
-    neighbour = world.spawn(urdf_spec(box_urdf('1 1 1', 1.0)), 'box', Pose((5, 5, 0.5)))
+    neighbour = world.spawn(BOX, 'box', Pose((5, 5, 0.5)))
     before = None
     for cycle in range(CYCLES):
         model = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
@@ -91,12 +93,11 @@ def test_repeated_spawns_and_deletions_do_not_leak_memory(world):
 
 
 def test_duplicate_and_empty_names_are_rejected(world):
-    spec = urdf_spec(box_urdf('1 1 1', 1.0))
-    world.spawn(spec, 'box', Pose((0, 0, 2.0)))
+    world.spawn(BOX, 'box', Pose((0, 0, 2.0)))
     with pytest.raises(ModelError, match="'box' is in the world already"):
-        world.spawn(spec, 'box', Pose((0, 0, 4.0)))
+        world.spawn(BOX, 'box', Pose((0, 0, 4.0)))
     with pytest.raises(ModelError, match='needs a name'):
-        world.spawn(spec, '', Pose((0, 0, 4.0)))
+        world.spawn(BOX, '', Pose((0, 0, 4.0)))
     with pytest.raises(NotFoundError, match="no model named 'ball'"):
         world.delete('ball')
 
@@ -157,8 +158,7 @@ def test_an_unknown_frame_is_an_error(world):
 
 def test_model_is_spawned_without_an_unknown_plugin(world, caplog):
     plugin = PluginSpec('p', 'libnope.so', Element('plugin'))
-    spec = urdf_spec(box_urdf('1 1 1', 1.0))
-    model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (plugin,)}), 'b', Pose())
+    model = world.spawn(replace(BOX, plugins=(plugin,)), 'b', Pose())
     assert model.plugins == {}
     assert model.left_out == ["plugin 'libnope.so'"]
     assert caplog.messages == [
@@ -169,34 +169,31 @@ def test_model_is_spawned_without_an_unknown_plugin(world, caplog):
 
 def test_a_plugin_that_is_known_but_not_supported_is_a_warning(world, caplog):
     plugin = PluginSpec('imu', 'libgazebo_ros_elevator.so', Element('plugin'))
-    model = world.spawn(replace(urdf_spec(box_urdf('1 1 1', 1.0)), plugins=(plugin,)), 'b', Pose())
+    model = world.spawn(replace(BOX, plugins=(plugin,)), 'b', Pose())
     assert model.left_out == ["plugin 'libgazebo_ros_elevator.so'"]
-    ((level, sentence),) = [(r.levelname, r.getMessage()) for r in caplog.records]
-    assert (level, sentence) == (
-        'WARNING',
-        "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported "
-        'yet; see doc/gazebo_compatibility.md',
-    )
+    assert [(r.levelname, r.getMessage()) for r in caplog.records] == [
+        (
+            'WARNING',
+            "model 'b', plugin 'imu': libgazebo_ros_elevator.so is known but not supported "
+            'yet; see doc/gazebo_compatibility.md',
+        )
+    ]
 
 
 def test_model_is_spawned_without_a_failing_plugin(world, caplog):
     drive = PluginSpec('d', 'libgazebo_ros_diff_drive.so', Element('plugin'))
-    spec = urdf_spec(box_urdf('1 1 1', 1.0))
-    model = world.spawn(type(spec)(**{**vars(spec), 'plugins': (drive,)}), 'b', Pose())
+    model = world.spawn(replace(BOX, plugins=(drive,)), 'b', Pose())
     assert model.plugins == {}
     world.run(10)
     assert "couldn't get wheel hinge joint named left_joint" in caplog.text
 
 
 def test_failing_plugin_does_not_set_motors(world):
-    spec = robot_spec()
-    (drive,) = spec.plugins
-    tags = tuple(
-        replace(tag, text='nowhere') if tag.tag == 'rightJoint' else tag
-        for tag in drive.element.children
+    broken = with_tags(
+        robot_spec(),
+        lambda tags: (replace(t, text='nowhere') if t.tag == 'rightJoint' else t for t in tags),
     )
-    broken = replace(drive, element=replace(drive.element, children=tags))
-    model = world.spawn(replace(spec, plugins=(broken,)), 'rosbots', SPAWN_POSE)
+    model = world.spawn(broken, 'rosbots', SPAWN_POSE)
     assert model.plugins == {}
     assert model.body.motors['wheel_left_joint'] == (0.0, 0.0)
 

@@ -26,13 +26,8 @@ SHORT = 0.3  # [s]
 BUSY = 10  # busy processes beside a test
 
 
-@contextlib.contextmanager
 def server_of(work):
-    server = ForkServer(lambda: work, 'test')
-    try:
-        yield server
-    finally:
-        server.close()
+    return contextlib.closing(ForkServer(lambda: work, 'test'))
 
 
 def outcome(work, payload=b'', allowance=ALLOWANCE):
@@ -104,9 +99,12 @@ def test_child_in_an_endless_loop_is_killed():
     assert outcome(lambda _: burn(math.inf), allowance=SHORT) == -signal.SIGPROF
 
 
-def test_child_that_sleeps_forever_is_killed(monkeypatch):
+@pytest.mark.parametrize(
+    'sleep', [signal.pause, lambda: os.kill(os.getpid(), signal.SIGSTOP)], ids=['asleep', 'stopped']
+)
+def test_child_that_sleeps_forever_is_killed(sleep, monkeypatch):
     monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
-    assert outcome(lambda _: signal.pause()) == -signal.SIGALRM
+    assert outcome(lambda _: sleep()) == -signal.SIGALRM
 
 
 def test_child_that_sleeps_for_a_while_is_not_killed(monkeypatch):
@@ -256,9 +254,8 @@ DECODING = partial(operator.methodcaller, 'decode')
 
 @pytest.fixture(name='server')
 def fixture_server():
-    server = ForkServer(DECODING, 'test', DECODING)
-    yield server
-    server.close()
+    with contextlib.closing(ForkServer(DECODING, 'test', DECODING)) as server:
+        yield server
 
 
 @pytest.mark.parametrize('number', [signal.SIGKILL, signal.SIGSEGV])
@@ -308,11 +305,6 @@ def test_replacing_server_reads_no_module_of_the_working_folder(server, tmp_path
     os.kill(server._server.process, signal.SIGKILL)
     assert server.run(b'world', ALLOWANCE) == 'world'
     assert not (tmp_path / 'harm').exists()
-
-
-def test_stopped_child_is_killed(monkeypatch):
-    monkeypatch.setattr(fork_server, 'POLL_PERIOD', 0.02)
-    assert outcome(lambda _: os.kill(os.getpid(), signal.SIGSTOP)) == -signal.SIGALRM
 
 
 def test_dead_server_without_a_replacement_is_reported():

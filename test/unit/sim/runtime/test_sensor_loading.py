@@ -21,8 +21,9 @@ def ray(samples=3, least=0.1, most=5, more=''):
     return RAY.format(samples=samples, least=least, most=most, more=more)
 
 
-def load(inside, caplog=None):
-    text = f'<sdf version="1.6"><model name="m"><link name="a">{inside}</link></model></sdf>'
+def load(inside, beside=''):
+    link = f'<link name="a">{inside}</link>'
+    text = f'<sdf version="1.6"><model name="m">{link}{beside}</model></sdf>'
     spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())
     return World(make_engine=FakeEngine).spawn(spec, 'bot', IDENTITY)
 
@@ -57,26 +58,16 @@ def test_sensor_of_an_unsupported_type_is_kept_and_reported(caplog):
 @pytest.mark.parametrize(
     ('library', 'level', 'remark'),
     [
-        (
-            'libgazebo_ros_prosilica.so',
-            'WARNING',
-            'libgazebo_ros_prosilica.so is known but not supported yet',
-        ),
-        (
-            'libgazebo_ros_laserr.so',
-            'ERROR',
-            "unknown library 'libgazebo_ros_laserr.so'; did you mean 'libgazebo_ros_laser.so'?",
-        ),
-        (
-            'libgazebo_ros_diff_drive.so',
-            'ERROR',
-            'libgazebo_ros_diff_drive.so works only in a <gazebo> or <model>, not where it stands',
-        ),
+        ('prosilica', 'WARNING', '{} is known but not supported yet'),
+        ('laserr', 'ERROR', "unknown library '{}'; did you mean 'libgazebo_ros_laser.so'?"),
+        ('diff_drive', 'ERROR', '{} works only in a <gazebo> or <model>, not where it stands'),
     ],
 )
 def test_unavailable_plugin_of_a_sensor_is_reported(library, level, remark, caplog):
+    library = f'libgazebo_ros_{library}.so'
     model = load(sensor(f'{ray()}<plugin name="p" filename="{library}"/>'))
-    assert said(caplog) == [(level, f"model 'bot', ray 's' of link 'a': {remark}; see {PAGE}")]
+    remark = f"model 'bot', ray 's' of link 'a': {remark.format(library)}; see {PAGE}"
+    assert said(caplog) == [(level, remark)]
     assert model.left_out == [f"ray 's' ({library})"]
 
 
@@ -130,10 +121,5 @@ def test_invalid_rate_means_every_step(rate, caplog):
 
 
 def test_sensor_plugin_does_not_run_in_a_model(caplog):
-    text = (
-        '<sdf version="1.6"><model name="m"><link name="a"/>'
-        '<plugin name="p" filename="libgazebo_ros_laser.so"/></model></sdf>'
-    )
-    spec, _ = load_sdf(text, 'bot', source='b.sdf', find_model=ModelSearch())
-    World(make_engine=FakeEngine).spawn(spec, 'bot', IDENTITY)
+    load('', '<plugin name="p" filename="libgazebo_ros_laser.so"/>')
     assert 'libgazebo_ros_laser.so works only in a <sensor>, not where it stands' in caplog.text

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from support import box_urdf, urdf_spec
+from support.scenes import link
 
 from rosbots_description.sim.core.transforms import Pose, Twist
 
@@ -19,10 +20,8 @@ TWO = (
     '<collision name="crate"><origin xyz="-0.5 -0.3 0"/><geometry><box size="0.2 0.2 0.2"/>'
     '</geometry></collision></link>'
 )
-LIFTED = (
-    '<link name="base"><inertial><mass value="2"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" '
-    'ixz="0" iyz="0"/></inertial><collision name="foot"><geometry><box size="1 1 0.2"/></geometry>'
-    '</collision></link><link name="arm"><inertial><origin xyz="0.3 0.1 0" rpy="0.3 0.2 0.9"/>'
+LIFTED = link('base', '<box size="1 1 0.2"/>', 2.0, (0.1, 0.1, 0.1)) + (
+    '<link name="arm"><inertial><origin xyz="0.3 0.1 0" rpy="0.3 0.2 0.9"/>'
     '<mass value="0.5"/><inertia ixx="0.01" iyy="0.02" izz="0.025" ixy="0" ixz="0" iyz="0"/>'
     '</inertial></link><joint name="shoulder" type="revolute"><parent link="base"/>'
     '<child link="arm"/><origin xyz="0 0 0.5" rpy="0 0 0.7"/><axis xyz="0 1 0"/>'
@@ -96,24 +95,16 @@ def test_friction_opposes_sliding(world, shape):
 
 
 def test_touching_links_of_a_model_give_one_contact(world):
-    leg = (
-        '<link name="{0}"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" '
-        'ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><sphere radius="0.2"/>'
-        '</geometry></collision></link><gazebo reference="{0}"><selfCollide>1</selfCollide>'
-        '</gazebo>'
-    )
-    joint = (
-        '<joint name="{0}" type="prismatic"><parent link="base"/><child link="{0}"/>'
-        '<origin xyz="{1} 0 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
+    legs = ''.join(
+        link(name, '<sphere radius="0.2"/>', 1.0, (0.1, 0.1, 0.1))
+        + f'<gazebo reference="{name}"><selfCollide>1</selfCollide></gazebo>'
+        f'<joint name="{name}" type="prismatic"><parent link="base"/><child link="{name}"/>'
+        f'<origin xyz="{x} 0 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="9" '
         'velocity="1"/></joint>'
+        for name, x in (('a', -0.3), ('b', 0.3))
     )
-    base = (
-        '<link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" '
-        'ixz="0" iyz="0"/></inertial></link>'
-    )
-    spec = urdf_spec(
-        base + leg.format('a') + leg.format('b') + joint.format('a', -0.3) + joint.format('b', 0.3)
-    )
+    base = link('base', '<box size="0.01 0.01 0.01"/>', 1.0, (1.0, 1.0, 1.0))
+    spec = urdf_spec(base + legs)
     pair = world.spawn(spec, 'pair', Pose((0.0, 0.0, 5.0)))
     pair.joints['a'].set_motor(1.0, 20.0)
     pair.joints['b'].set_motor(-1.0, 20.0)

@@ -66,23 +66,13 @@ def body(moments, com=(0.0, 0.0, 0.0), mu=1.0):
 
 def chain(count, length, mass=1.0, hangs=True):
     """Return a chain of rods along x; if `hangs`, its first end is on a joint to the world."""
-    rod = Inertial(
-        mass,
-        Pose((length / 2.0, 0.0, 0.0)),
-        mass * 1e-4,
-        mass * length**2 / 12.0,
-        mass * length**2 / 12.0,
-    )
+    moment = mass * length**2 / 12.0
+    rod = Inertial(mass, Pose((length / 2.0, 0.0, 0.0)), mass * 1e-4, moment, moment)
     links = tuple(LinkSpec(f'link{i}', Pose((i * length, 0.0, 0.0)), rod) for i in range(count))
     joints = tuple(
-        JointSpec(
-            f'joint{i}',
-            REVOLUTE,
-            f'link{i - 1}' if i else 'world',
-            f'link{i}',
-            axis=(0.0, 1.0, 0.0),
-        )
-        for i in range(not hangs, count)
+        JointSpec(f'joint{i}', REVOLUTE, parent, f'link{i}', axis=(0.0, 1.0, 0.0))
+        for i, parent in enumerate(['world', *(link.name for link in links[:-1])])
+        if i or hangs
     )
     return ModelSpec('chain', links, joints)
 

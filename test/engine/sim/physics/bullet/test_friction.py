@@ -7,7 +7,7 @@ import pytest
 from support import box_urdf, empty_world, urdf_spec
 from support.scenes import ball
 
-from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_rpy
+from rosbots_description.sim.core.transforms import ZERO, Pose, Twist, compose, from_rpy
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.physics.bullet.friction_pairs import FrictionPairs, Kind, Role, Side
 
@@ -22,6 +22,14 @@ def rough(mu, size='0.4 0.4 0.1', mass=1.0, static=False):
     inertia = f'<inertia ixx="{y + z}" iyy="{x + z}" izz="{x + y}" '
     text = box_urdf(size, mass, surface).replace('<inertia ixx="0.1" iyy="0.1" izz="0.1" ', inertia)
     return replace(urdf_spec(text), static=static)
+
+
+def push(world, boxes, force, steps):
+    """Push boxes along x [N] for some steps."""
+    for _ in range(steps):
+        for box in boxes:
+            box.links['box'].apply_wrench((force, 0.0, 0.0), ZERO)
+        world.run(1)
 
 
 def acceleration_down(slope, mu_box, mu_ramp, steps=SECOND):
@@ -88,9 +96,7 @@ def test_high_friction_resists_a_strong_push(world, mu):
     box = world.spawn(rough(mu, '0.6 0.6 0.05', 2.0), 'box', Pose((0.0, 0.0, 0.025)))
     world.run(200)
     start = box.pose.position
-    for _ in range(SECOND):
-        box.links['box'].apply_wrench((1.4 * 2.0 * GRAVITY, 0.0, 0.0), (0.0, 0.0, 0.0))
-        world.run(1)
+    push(world, [box], 1.4 * 2.0 * GRAVITY, SECOND)
     assert math.dist(box.pose.position, start) < 1e-3
     assert abs(acceleration_down(math.radians(55.0), mu, mu)) < 1e-3
 
@@ -113,9 +119,7 @@ def test_friction_between_movable_boxes_is_that_of_the_lesser_mu(world, mu_low, 
     world.run(300)
     for force, steps in ((0.9 * mu * GRAVITY, 300), (1.5 * mu * GRAVITY, 500)):
         before = high.twist.linear[0] - low.twist.linear[0]
-        for _ in range(steps):
-            high.links['box'].apply_wrench((force, 0.0, 0.0), (0.0, 0.0, 0.0))
-            world.run(1)
+        push(world, [high], force, steps)
         gained = high.twist.linear[0] - low.twist.linear[0] - before
         slides = max(0.0, force - mu * GRAVITY) * steps / SECOND
         assert gained == pytest.approx(slides, rel=0.05, abs=2e-3)
@@ -132,10 +136,7 @@ def test_slippery_floor_applies_to_models_spawned_later(world):
     world.spawn(replace(ground, links=(link,)), 'ground_plane', Pose())
     boxes += [world.spawn(rough(mu), f'box{mu}', Pose((0.0, 2.0 + mu, 0.05))) for mu in (1.0, 5.0)]
     boxes.append(world.spawn(urdf_spec(ball('ball', 0.05, 1.0)), 'ball', Pose((0, -2, 0.05))))
-    for _ in range(SECOND):
-        for box in boxes[:3]:
-            box.links['box'].apply_wrench((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-        world.run(1)
+    push(world, boxes[:3], 3.0, SECOND)
     for box in boxes[:3]:
         assert box.twist.linear[0] == pytest.approx(3.0 - 0.2 * GRAVITY, rel=0.02)
     assert boxes[3].pose.position[2] == pytest.approx(0.05, abs=1e-3)

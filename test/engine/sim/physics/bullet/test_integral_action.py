@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 from support import urdf_spec
-from support.scenes import box, castered, spec_height, wheel
+from support.scenes import box, castered, spec_height, tilted_floor, wheel
 
-from rosbots_description.sim.core.transforms import Pose, compose, from_rpy, rotate
+from rosbots_description.sim.core.transforms import Pose, compose
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.physics.bullet.integral_action import PERIOD
@@ -22,14 +22,16 @@ def spawned(world, spec, pitch=0.0, height=0.0):
     """Return the robot after half a second, facing up a slope [rad] or on the ground."""
     pose = Pose((0.0, 0.0, spec_height(spec) + height))
     if pitch:
-        tilt = from_rpy(0.0, -pitch, 0.0)
-        board = replace(urdf_spec(box('board', (60.0, 60.0, 1.0), 1.0)), static=True)
-        world.delete('ground_plane')
-        world.spawn(board, 'board', Pose(rotate(tilt, (0.0, 0.0, -0.5)), tilt))
-        pose = compose(Pose(orientation=tilt), pose)
+        pose = compose(tilted_floor(world, pitch=-pitch), pose)
     model = world.spawn(spec, 'robot', pose)
     world.run(round(0.5 / world.engine._physics.step_size))
     return model
+
+
+def block(world):
+    """Put a wall in front of the robot."""
+    wall = replace(urdf_spec(box('wall', (0.1, 2.0, 1.0), 1.0)), static=True)
+    world.spawn(wall, 'wall', Pose((0.35, 0.0, 0.5)))
 
 
 def command(model, forward, turning=0.0):
@@ -85,8 +87,7 @@ def test_the_solver_makes_as_many_iterations_at_each_command(world):
 
 def test_a_stalled_robot_that_is_set_free_is_too_fast_for_a_period_at_most(world):
     model = spawned(world, MIDDLE)
-    wall = replace(urdf_spec(box('wall', (0.1, 2.0, 1.0), 1.0)), static=True)
-    world.spawn(wall, 'wall', Pose((0.35, 0.0, 0.5)))
+    block(world)
     command(model, 0.2)
     world.run(3000)
     assert abs(model.twist.linear[0]) < 0.01
@@ -140,8 +141,7 @@ def test_two_motors_on_one_axle_both_reach_their_speeds(world):
 
 def test_a_robot_that_pushes_against_a_wall_does_not_wind_up_without_bound(world):
     model = spawned(world, castered(casters=1, torque=1e6))
-    wall = replace(urdf_spec(box('wall', (0.1, 2.0, 1.0), 1.0)), static=True)
-    world.spawn(wall, 'wall', Pose((0.35, 0.0, 0.5)))
+    block(world)
     command(model, 0.2)
     world.run(20_000)
     assert all(abs(one.offset) <= 0.15 * 2.0 + 1.0 for one in model.body.integrals.values())

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import chain
 
 import pytest
 from support import SPAWN_POSE, empty_world, robot_spec, urdf_spec
@@ -104,12 +105,7 @@ def states(world):
     found = {}
     for name, model in world.models.items():
         for of_link, (pose, twist) in world.engine.link_states(model.body).items():
-            found[name, of_link] = (
-                *pose.position,
-                *pose.orientation,
-                *twist.linear,
-                *twist.angular,
-            )
+            found[name, of_link] = (*chain(*pose, *twist),)
     return found
 
 

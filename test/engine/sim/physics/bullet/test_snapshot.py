@@ -14,6 +14,7 @@ from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.physics.bullet.client import pybullet
 from rosbots_description.sim.physics.bullet.tuning import Tuning
 
+BOX = urdf_spec(box_urdf('0.2 0.2 0.2', 1.0))
 # Two links on a joint with a spring, with an inertia that makes them tumble.
 ARM = (
     '<link name="a"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0" '
@@ -72,7 +73,7 @@ def mix_up(world, chance):
 def pile(world, chance, boxes):
     for k in range(boxes):
         pose = Pose((0.6 + chance.uniform(0.0, 0.5), chance.uniform(-0.4, 0.4), 0.2 + 0.25 * k))
-        world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), f'box{k}', pose)
+        world.spawn(BOX, f'box{k}', pose)
 
 
 @pytest.mark.parametrize(('seed', 'boxes', 'robots'), [(1, 0, 1), (2, 2, 1), (3, 8, 1), (4, 4, 3)])
@@ -104,7 +105,7 @@ def test_continuation_from_a_snapshot_is_bit_identical(world, seed, boxes, robot
 @pytest.mark.parametrize(
     ('make_spec', 'tolerances'),
     [
-        (lambda: urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), (0.0, 0.0)),
+        (lambda: BOX, (0.0, 0.0)),
         (robot_spec, (1e-6, 1e-4)),
     ],
     ids=['box', 'robot'],
@@ -123,7 +124,7 @@ def test_taking_a_snapshot_hardly_changes_the_motion(make_spec, tolerances):
 
 def test_continuation_is_bit_identical_with_spin_slip_forces_and_new_step_size(world):
     arm = world.spawn(urdf_spec(ARM), 'arm', Pose((0.0, 0.0, 90.0)))
-    box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((3.0, 0.0, 0.1)))
+    box = world.spawn(BOX, 'box', Pose((3.0, 0.0, 0.1)))
     arm.set_twist(Twist((0.0, 0.0, 9.0), (0.3, 20.0, 0.2)))
     world.engine.step(333)
     world.engine.set_slip_compliance(box.body, 'box', (1.0, 0.0, 0.0), (0.01, 0.02))
@@ -146,7 +147,7 @@ def test_continuation_is_bit_identical_with_spin_slip_forces_and_new_step_size(w
 def test_static_model_is_restored_to_its_pose(world):
     shelf = urdf_spec(box_urdf('1 1 0.2', 1.0, '<gazebo><static>true</static></gazebo>'))
     stand = world.spawn(shelf, 'shelf', Pose((0.0, 0.0, 1.0)))
-    box = world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.2)))
+    box = world.spawn(BOX, 'box', Pose((0.0, 0.0, 1.2)))
     world.engine.step(500)
     snapshot = world.engine.snapshot()
     wanted = go_on(world, 500)
@@ -159,7 +160,7 @@ def test_static_model_is_restored_to_its_pose(world):
 
 def test_snapshot_of_other_models_is_rejected_with_a_message(world):
     snapshot = world.engine.snapshot()
-    world.spawn(urdf_spec(box_urdf('0.2 0.2 0.2', 1.0)), 'box', Pose((0.0, 0.0, 1.0)))
+    world.spawn(BOX, 'box', Pose((0.0, 0.0, 1.0)))
     with pytest.raises(SimError, match='of other models'):
         world.engine.restore(snapshot)
     later = world.engine.snapshot()

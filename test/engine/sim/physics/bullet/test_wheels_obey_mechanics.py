@@ -16,7 +16,9 @@ from support.scenes import (
     forward_speed,
     spec_height,
     surface,
+    tilted_floor,
     wheel,
+    with_tags,
 )
 
 from rosbots_description.sim.core.transforms import (
@@ -49,15 +51,6 @@ HEAVY = castered(50.0, 1.0, casters=2, mu=0.1)
 def command(model, forward, turning):
     for plugin in model.plugins.values():
         plugin.command(forward, turning)
-
-
-def tilted_floor(world, roll=0.0, pitch=0.0):
-    """Spawn a large board; return the frame of its upper face."""
-    tilt = from_rpy(math.radians(roll), math.radians(pitch), 0.0)
-    board = replace(urdf_spec(box('board', (60.0, 60.0, 1.0), 1.0)), static=True)
-    world.delete('ground_plane')
-    world.spawn(board, 'board', Pose(rotate(tilt, (0.0, 0.0, -0.5)), tilt))
-    return Pose((0.0, 0.0, 0.0), tilt)
 
 
 def placed(world, spec, frame=None, yaw=0.0):
@@ -93,7 +86,7 @@ def turned(model, world, steps):
     ],
 )
 def test_robot_driving_across_a_slope_does_not_slide_down(world, spec, degrees, speed):
-    frame = tilted_floor(world, roll=degrees)
+    frame = tilted_floor(world, roll=math.radians(degrees))
     model = placed(world, spec, frame)
     before = within(frame, model).position
     command(model, speed, 0.0)
@@ -119,7 +112,7 @@ def test_robot_driving_across_a_slope_does_not_slide_down(world, spec, degrees, 
 )
 def test_tyres_on_a_slope_do_not_slip_sideways(world, spec, degrees, speed, heading):
     """Lateral slip along the axle; motor velocity error turns the robot slightly, without slip."""
-    model = placed(world, spec, tilted_floor(world, roll=degrees), heading)
+    model = placed(world, spec, tilted_floor(world, roll=math.radians(degrees)), heading)
     command(model, speed, 0.0)
     before = model.pose.orientation
     slip = ahead = 0.0
@@ -144,7 +137,7 @@ def test_tyres_on_a_slope_do_not_slip_sideways(world, spec, degrees, speed, head
     ],
 )
 def test_slow_robot_climbs_a_ramp_as_commanded_without_rolling_back(world, spec, degrees, speed):
-    frame = tilted_floor(world, pitch=-degrees)
+    frame = tilted_floor(world, pitch=-math.radians(degrees))
     model = placed(world, spec, frame)
     command(model, speed, 0.0)
     world.run(2000)
@@ -237,7 +230,7 @@ def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, m
     ],
 )
 def test_a_parked_robot_does_not_creep(world, spec, degrees, yaw):
-    model = placed(world, spec, tilted_floor(world, pitch=-degrees), yaw)
+    model = placed(world, spec, tilted_floor(world, pitch=-math.radians(degrees)), yaw)
     world.run(1000)
     before = model.pose.position
     world.run(5000)
@@ -276,7 +269,7 @@ def tall(mass=4.0, size=0.4):
 def test_overturned_robot_with_turning_wheels_stays_in_place(
     world, mass, size, forward, turning, degrees
 ):
-    frame = tilted_floor(world, roll=degrees)
+    frame = tilted_floor(world, roll=math.radians(degrees))
     pose = Pose((0.0, 0.0, size / 2.0 + 0.001), from_rpy(math.pi, 0.0, 0.0))
     model = world.spawn(tall(mass, size), 'robot', compose(frame, pose))
     command(model, forward, turning)
@@ -365,15 +358,8 @@ def touches(world, model):
 @pytest.mark.parametrize(('spec', 'heading'), [(MIDDLE, 0.0), (LIGHT, 0.4), (HEAVY, 1.1)])
 def test_friction_never_accelerates_a_sliding_robot(world, spec, heading):
     model = placed(world, spec, yaw=heading)
-    model.set_twist(
-        Twist(
-            (
-                0.3 * math.cos(heading) - 0.4 * math.sin(heading),
-                0.3 * math.sin(heading) + 0.4 * math.cos(heading),
-                0.0,
-            )
-        )
-    )
+    cos, sin = math.cos(heading), math.sin(heading)
+    model.set_twist(Twist((0.3 * cos - 0.4 * sin, 0.3 * sin + 0.4 * cos, 0.0)))
     fastest = math.hypot(*model.twist.linear[:2])
     for _ in range(200):
         world.run(1)
@@ -394,7 +380,7 @@ def test_friction_never_accelerates_a_sliding_robot(world, spec, heading):
 )
 def test_friction_is_within_its_limit_and_adds_no_energy(world, spec, heading, degrees, commands):
     """At most mu N per contact, except for one that loses its load within the step."""
-    frame = tilted_floor(world, roll=degrees) if degrees else None
+    frame = tilted_floor(world, roll=math.radians(degrees)) if degrees else None
     model = placed(world, spec, frame, heading)
     given = taken = 0.0  # [J]
     for forward, turning in commands:
@@ -416,21 +402,14 @@ def test_friction_is_within_its_limit_and_adds_no_energy(world, spec, heading, d
 
 def soft(spec, kp):
     """Return a robot with a contact stiffness of its wheels [N/m]."""
-    return replace(
-        spec,
-        links=tuple(
-            replace(
-                one,
-                collisions=tuple(
-                    replace(shape, surface=replace(shape.surface, kp=kp))
-                    if isinstance(shape.geometry, Cylinder)
-                    else shape
-                    for shape in one.collisions
-                ),
-            )
-            for one in spec.links
-        ),
-    )
+
+    def softened(shape):
+        if not isinstance(shape.geometry, Cylinder):
+            return shape
+        return replace(shape, surface=replace(shape.surface, kp=kp))
+
+    links = (replace(one, collisions=tuple(map(softened, one.collisions))) for one in spec.links)
+    return replace(spec, links=tuple(links))
 
 
 @pytest.mark.parametrize(
@@ -452,26 +431,17 @@ def test_a_robot_on_soft_wheels_drives_straight(world, spec, kp, heading):
 
 
 def on_light_wheels(mass, wheel_mass, size):
+    def lightened(link):
+        if 'wheel' not in link.name:
+            return link
+        before = link.inertial
+        moments = {
+            key: getattr(before, key) * wheel_mass / before.mass for key in ('ixx', 'iyy', 'izz')
+        }
+        return replace(link, inertial=replace(before, mass=wheel_mass, **moments))
+
     spec = castered(mass, size, casters=1)
-    return replace(
-        spec,
-        links=tuple(
-            replace(
-                one,
-                inertial=replace(
-                    one.inertial,
-                    mass=wheel_mass,
-                    **{
-                        key: getattr(one.inertial, key) * wheel_mass / one.inertial.mass
-                        for key in ('ixx', 'iyy', 'izz')
-                    },
-                ),
-            )
-            if 'wheel' in one.name
-            else one
-            for one in spec.links
-        ),
-    )
+    return replace(spec, links=tuple(map(lightened, spec.links)))
 
 
 @pytest.mark.parametrize(
@@ -689,13 +659,9 @@ def test_four_wheels_drive_an_arc_as_in_gazebo(world):
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE, robot_spec()], ids=['1 kg', '5 kg', 'article'])
 def test_swapped_joints_drive_equally_straight(spec):
     """With left and right swapped in the tags, the robot turns the other way."""
-    (plugin,) = spec.plugins
-    children = []
     sides = {'leftJoint': 'rightJoint', 'rightJoint': 'leftJoint'}
-    for child in plugin.element.children:
-        children.append(replace(child, tag=sides.get(child.tag, child.tag)))
-    swapped = replace(
-        spec, plugins=(replace(plugin, element=replace(plugin.element, children=tuple(children))),)
+    swapped = with_tags(
+        spec, lambda tags: (replace(tag, tag=sides.get(tag.tag, tag.tag)) for tag in tags)
     )
     yaws = []
     for one in (spec, swapped):
@@ -720,12 +686,8 @@ def axle_angle(transform):
 @pytest.mark.parametrize('driven', [(0.3, 0.0), (0.2, -0.7)])
 def test_wheel_angles_of_transform_joint_states_and_odometry_agree(world, spec, driven):
     tags = {'odometrySource': 'encoder', 'publishWheelTF': 'true', 'publishWheelJointState': 'true'}
-    (plugin,) = spec.plugins
-    children = (*plugin.element.children, *(Element(tag, text) for tag, text in tags.items()))
-    spec = replace(
-        spec, plugins=(replace(plugin, element=replace(plugin.element, children=children)),)
-    )
-    model = placed(world, spec)
+    added = [Element(tag, text) for tag, text in tags.items()]
+    model = placed(world, with_tags(spec, lambda given: (*given, *added)))
     drive = next(iter(model.plugins.values()))
     told = {}
     for output in (drive.joint_states, drive.wheel_transform, drive.odometry):

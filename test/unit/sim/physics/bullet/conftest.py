@@ -1,7 +1,7 @@
 """PyBullet with one body, in place of the engine."""
 
 import pytest
-from support.fast_body import Bullet
+from support.fast_body import Bullet, masses, watched
 
 from rosbots_description.sim.physics.bullet import fast_rotation
 
@@ -12,3 +12,11 @@ def bullet(monkeypatch):
     made = Bullet()
     monkeypatch.setattr(fast_rotation, 'pybullet', made.called())
     return made
+
+
+@pytest.fixture
+def bodies(bullet):
+    """The fast bodies of a world in which one is, which has made a step in the air."""
+    bodies = watched(masses())
+    bodies.after_step()
+    return bodies

@@ -73,29 +73,15 @@ def seen(count):
     'made, most, message',
     [
         (chain, size_limits.MAX_JOINTS, 'a kinematic tree of the model has more than 127 joints'),
-        (
-            rough,
-            size_limits.MAX_JOINTS + 1,
-            'has 128 collisions with surfaces of their own and 0 joints',
-        ),
+        (rough, size_limits.MAX_JOINTS + 1, 'has 128 collisions with surfaces of their own and 0'),
         (
             lambda count: rough(count, joints=100),
             28,
-            '28 collisions with surfaces of their own and '
-            '100 joints; the physics engine supports 127 of both: give the collisions of a link '
-            'the same '
-            'mu',
+            '28 collisions with surfaces of their own and 100 joints; the physics engine supports '
+            '127 of both: give the collisions of a link the same mu',
         ),
-        (
-            loose,
-            size_limits.MAX_LINKS,
-            'has 501 links that fixed joints do not merge; at most 500 are',
-        ),
-        (
-            seen,
-            size_limits.MAX_SHAPES,
-            'has 5001 collisions and visuals; at most 5000 are accepted',
-        ),
+        (loose, size_limits.MAX_LINKS, 'has 501 links that fixed joints do not merge; at most 500'),
+        (seen, size_limits.MAX_SHAPES, 'has 5001 collisions and visuals; at most 5000 are'),
     ],
 )
 def test_model_beyond_a_limit_of_the_engine_is_rejected(meshes, made, most, message):

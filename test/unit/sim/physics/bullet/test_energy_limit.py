@@ -27,9 +27,7 @@ from rosbots_description.sim.core.arrays import rotation_matrix
 from rosbots_description.sim.physics.bullet.body import Masses
 
 
-def test_energies_are_those_of_mechanics_half_a_step_ago(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_energies_are_those_of_mechanics_half_a_step_ago(bullet, bodies):
     total, own = energies_of(TWISTS)
     peak, limit, noted_total, is_airborne = noted(bodies)
     assert noted_total == pytest.approx(total, rel=1e-12)
@@ -72,9 +70,7 @@ def test_links_without_gravity_have_no_energy_of_height(bullet):
     )
 
 
-def test_energy_above_the_limit_is_taken_from_all_velocities_about_the_centre_of_mass(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_excess_energy_is_taken_from_all_velocities_about_the_centre_of_mass(bullet, bodies):
     limit = noted(bodies)[1]
     bullet.speed_up(1.1)
     before = dict(bullet.twists)
@@ -104,9 +100,7 @@ def test_energy_of_a_light_body_is_limited_as_well(bullet):
     assert bullet.twists[-1][1] == pytest.approx(math.sqrt(1.01) / 1.1 * angular)
 
 
-def test_energy_below_the_limit_is_left(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_energy_below_the_limit_is_left(bullet, bodies):
     bullet.speed_up(1.004)  # 0.8 % of energy
     before = dict(bullet.twists)
     bodies.after_step()
@@ -133,9 +127,7 @@ def test_nothing_works_on_a_link_without_joints(bullet):
     assert noted(bodies)[1] == limit
 
 
-def test_work_from_outside_renews_the_limit(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_work_from_outside_renews_the_limit(bullet, bodies):
     bullet.speed_up(1.3)
     before = dict(bullet.twists)
     bodies.allow_external_work(BODY)
@@ -173,9 +165,7 @@ def test_energy_lost_to_the_ground_is_not_given_back(bullet):
     assert noted(bodies)[1] == pytest.approx(energies_of(bullet.twists)[0] + 0.01 * peak, rel=1e-12)
 
 
-def test_limit_changes_between_total_and_own_energy_at_touch_down_and_take_off(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_limit_changes_between_total_and_own_energy_at_touch_down_and_take_off(bullet, bodies):
     total, own = energies_of(TWISTS)
     bullet.touched = {GROUND}
     bodies.after_step()

@@ -81,9 +81,7 @@ def test_correction_ends_after_two_seconds_of_slow_motion_on_the_ground(bullet):
     assert checks == 101  # 2.02 s at 1 ms
 
 
-def test_a_flying_body_is_corrected_however_slow_it_is(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_a_flying_body_is_corrected_however_slow_it_is(bullet, bodies):
     bullet.twists[-1] = (0.0, 0.0, 0.0), (0.0, 0.0, 0.1)
     bullet.joint = 0.0, 0.0, 0.0
     for _ in range(150):
@@ -102,9 +100,7 @@ def test_a_fast_check_begins_the_wait_anew(bullet):
     assert not bodies
 
 
-def test_setting_a_velocity_checks_all_bodies_before_the_next_step(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_setting_a_velocity_checks_all_bodies_before_the_next_step(bodies):
     bodies.until_check = 13
     bodies.allow_external_work(BODY)
     assert bodies.until_check == 13
@@ -139,9 +135,7 @@ def test_removed_bodies_are_not_looked_at(monkeypatch):
     assert not bodies
 
 
-def test_a_state_continues_as_the_original(bullet):
-    bodies = watched(masses())
-    bodies.after_step()
+def test_a_state_continues_as_the_original(bullet, bodies):
     bodies.until_check = 5
     saved = bodies.save_state()
     bullet.speed_up(1.1)

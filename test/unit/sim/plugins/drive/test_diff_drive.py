@@ -29,25 +29,20 @@ def test_the_first_update_comes_one_step_late_and_the_mean_rate_is_exact():
     assert times == [11, 21, 31, 41, 51, 61, 71, 81, 91]
 
 
-def test_wheels_turn_forward_and_the_right_one_faster_in_a_left_turn():
-    plugin = make(wheelAcceleration='0')
-    plugin.command(0.5, 0.5)
-    run(plugin, PERIOD_STEPS + 1)
-    assert rim_speeds(plugin) == pytest.approx((0.5 - 0.275, 0.5 + 0.275))
-
-
-def test_ramp_adds_eleven_milliseconds_of_acceleration_every_ten():
-    plugin = make()
-    plugin.command(0.5, 0.0)
-    run(plugin, PERIOD_STEPS * 10 + 1)
-    assert rim_speeds(plugin) == pytest.approx((10 * 0.011,) * 2)
-
-
-def test_a_ramp_ends_at_the_target_when_one_wheel_is_near_it():
-    plugin = make()
-    plugin.command(0.5, 0.0)
-    run(plugin, 600)
-    assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
+@pytest.mark.parametrize(
+    ('acceleration', 'turning', 'steps', 'speeds'),
+    [
+        pytest.param('0', 0.5, 11, (0.225, 0.775), id='the right one is faster in a left turn'),
+        pytest.param('1', 0.0, 101, (10 * 0.011,) * 2, id='a ramp adds 11 ms of acceleration'),
+        pytest.param('1', 0.0, 600, (0.5, 0.5), id='a ramp ends at the target'),
+        pytest.param('1', 0.0, 20_000, (0.5, 0.5), id='a command holds without a timeout'),
+    ],
+)
+def test_wheels_follow_the_command(acceleration, turning, steps, speeds):
+    plugin = make(wheelAcceleration=acceleration)
+    plugin.command(0.5, turning)
+    run(plugin, steps)
+    assert rim_speeds(plugin) == pytest.approx(speeds)
 
 
 @pytest.mark.parametrize('wheel', ['left', 'right'])
@@ -79,13 +74,6 @@ def test_the_torque_limit_is_wheel_torque():
     plugin = make(wheelTorque='2.5')
     assert plugin.model.joints['left'].effort == 2.5
     assert make(torque='20').model.joints['left'].effort == 5.0
-
-
-def test_last_command_holds_without_timeout():
-    plugin = make()
-    plugin.command(0.5, 0.0)
-    run(plugin, 20_000)
-    assert rim_speeds(plugin) == pytest.approx((0.5, 0.5))
 
 
 def test_reset_clears_the_command_and_keeps_the_ramp():
