@@ -151,9 +151,9 @@ def reconfigure(adapter: Adapter, name: str) -> Callable[[], None]:
     plugin = cast(CameraPlugin, adapter.plugin)
     if not plugin.camera_name:
         return lambda: None
-    from ..reconfigure.camera import CameraReconfigure
+    from ..reconfigure.camera import serve_rate
 
-    return CameraReconfigure(plugin, name, adapter.server.loop.post).close
+    return serve_rate(plugin, name, adapter.server.loop.post).close
 
 
 def channel_topics(

@@ -10,10 +10,10 @@ from .registry import declare_topics
 
 def reconfigure(adapter: Adapter, _name: str) -> Callable[[], None]:
     """Offer the slip compliances; loading the library must not keep the world waiting."""
-    from ..reconfigure.wheel_slip import SlipReconfigure
+    from ..reconfigure.wheel_slip import serve_slip
 
     assert isinstance(adapter.plugin, WheelSlip)
-    return SlipReconfigure(adapter.plugin, adapter.server.loop.post).close
+    return serve_slip(adapter.plugin, adapter.server.loop.post).close
 
 
 declare_topics(WheelSlip, Offers('', reconfigure))

@@ -23,42 +23,29 @@ MULTIPLIERS = (
 RATE, TRANSFORM = 'publish_rate', 'enable_odom_tf'
 
 
-class DiffDriveReconfigure(PluginReconfigure):
-    """Lets dynamic_reconfigure change a diff_drive_controller."""
+def serve_settings(controller: DiffDriveController, name: str, post: Post) -> PluginReconfigure:
+    """Let dynamic_reconfigure change a diff_drive_controller, in the namespace `name`."""
+    values = controller.params.values
+    parameters = (
+        *(
+            Parameter(one, getattr(controller, one), 0.5, 1.5, 'factor of the wheels')
+            for one in MULTIPLIERS
+        ),
+        Parameter(RATE, float(values[RATE]), 0.0, 2000.0, 'of odometry [Hz]'),
+        Parameter(
+            TRANSFORM,
+            controller.enable_odom_tf,
+            False,
+            True,
+            'whether the transform to the base is published',
+        ),
+    )
 
-    def __init__(self, controller: DiffDriveController, name: str, post: Post) -> None:
-        """Advertise its settings in the namespace `name`."""
-        self._controller, self._post = controller, post
-        self._is_first = True
-        super().__init__(
-            (
-                *(
-                    Parameter(one, getattr(controller, one), 0.5, 1.5, 'factor of the wheels')
-                    for one in MULTIPLIERS
-                ),
-                Parameter(
-                    RATE, float(controller.params.values[RATE]), 0.0, 2000.0, 'of odometry [Hz]'
-                ),
-                Parameter(
-                    TRANSFORM,
-                    controller.enable_odom_tf,
-                    False,
-                    True,
-                    'whether the transform to the base is published',
-                ),
-            ),
-            name,
-        )
-
-    def apply(self, config: Config) -> None:
-        """Set them, but not for the library's first call: they are those of the controller."""
-        if not self._is_first:
-            self._post(lambda: self._set(config))
-        self._is_first = False
-
-    def _set(self, config: Config) -> None:
+    def apply(config: Config) -> None:
         for one in (*MULTIPLIERS, TRANSFORM):
-            setattr(self._controller, one, config[one])
-        if config[RATE] != self._controller.params.values[RATE]:
-            self._controller.params.values[RATE] = config[RATE]
-            self._controller.set_publish_rate(config[RATE])
+            setattr(controller, one, config[one])
+        if config[RATE] != values[RATE]:
+            values[RATE] = config[RATE]
+            controller.set_publish_rate(config[RATE])
+
+    return PluginReconfigure(parameters, name, post, apply)

@@ -36,25 +36,17 @@ def parameters(gains: Gains) -> tuple[Parameter, ...]:
     )
 
 
-class GainsReconfigure(PluginReconfigure):
-    """Lets dynamic_reconfigure change the gains of a PID."""
+def serve_gains(pid: Pid, name: str, post: Post) -> PluginReconfigure:
+    """Let dynamic_reconfigure change the gains of a PID, in the namespace `name`."""
 
-    def __init__(self, pid: Pid, name: str, post: Post) -> None:
-        """Advertise them in the namespace `name`."""
-        self._pid, self._post = pid, post
-        self._is_first = True
-        super().__init__(parameters(pid.gains), name)
+    def apply(config: Config) -> None:
+        pid.gains = Gains(
+            config['p'],
+            config['i'],
+            config['d'],
+            config['i_clamp_max'],
+            config['i_clamp_min'],
+            config['antiwindup'],
+        )
 
-    def apply(self, config: Config) -> None:
-        """Set the gains, but not for the library's first call: they are those of the PID."""
-        if not self._is_first:
-            gains = Gains(
-                config['p'],
-                config['i'],
-                config['d'],
-                config['i_clamp_max'],
-                config['i_clamp_min'],
-                config['antiwindup'],
-            )
-            self._post(lambda: setattr(self._pid, 'gains', gains))
-        self._is_first = False
+    return PluginReconfigure(parameters(pid.gains), name, post, apply)

@@ -28,24 +28,23 @@ PARAMETERS = tuple(
 )
 
 
-class SlipReconfigure(PluginReconfigure):
-    """Lets dynamic_reconfigure change the slip compliances of a model's wheels."""
+def serve_slip(plugin: WheelSlip, post: Post) -> PluginReconfigure:
+    """Let dynamic_reconfigure change the slip compliances of a model's wheels.
 
-    def __init__(self, plugin: WheelSlip, post: Post) -> None:
-        """Advertise them in the plugin's namespace."""
-        self._plugin, self._post = plugin, post
-        super().__init__(PARAMETERS, f'/{plugin.namespace}')
+    Negative ones are those of the description.
+    """
 
-    def apply(self, config: Config) -> None:
-        """Set the compliances of all wheels; negative ones are those of the description."""
+    def apply(config: Config) -> None:
         given = {'lateral': config[LATERAL], 'longitudinal': config[LONGITUDINAL]}
         for direction, value in given.items():
             if value >= 0.0:
                 logger.info(
                     'Reconfigure request for the gazebo ros wheel_slip: %s. New %s slip '
                     'compliance: %.3e',
-                    self._plugin.model.name,
+                    plugin.model.name,
                     direction,
                     value,
                 )
-        self._post(lambda: self._plugin.set_compliance(**given))
+        plugin.set_compliance(**given)
+
+    return PluginReconfigure(PARAMETERS, f'/{plugin.namespace}', post, apply, use_presets=True)

@@ -79,14 +79,14 @@ class GainsEndpoint(Endpoint):
 
 def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
     """Advertise gains, by their paths in the namespace; called on the registrar's thread."""
-    from ...reconfigure.gains import GainsReconfigure
+    from ...reconfigure.gains import serve_gains
 
     if adapter.is_closed:
         return
     for path, pid in pids.items():
         name = topic_name(adapter.plugin.namespace, path)
         try:
-            server = GainsReconfigure(pid, name, adapter.server.loop.post)
+            server = serve_gains(pid, name, adapter.server.loop.post)
         except rospy.ServiceException:
             logger.warning(
                 '%s: there is a server of dynamic_reconfigure in %s already',
@@ -162,11 +162,10 @@ def _frames(drive: DriveController) -> tuple[str, str]:
 
 def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
     """Offer the settings of a diff_drive_controller to dynamic_reconfigure."""
-    from ...reconfigure.diff_drive import DiffDriveReconfigure
+    from ...reconfigure.diff_drive import serve_settings
 
-    return DiffDriveReconfigure(
-        cast(DiffDriveController, adapter.plugin), name, adapter.server.loop.post
-    ).close
+    controller = cast(DiffDriveController, adapter.plugin)
+    return serve_settings(controller, name, adapter.server.loop.post).close
 
 
 GROUP = Subscribes('command', Float64MultiArray, 'command', read_data)

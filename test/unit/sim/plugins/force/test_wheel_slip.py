@@ -1,9 +1,8 @@
 """Slip compliances of tyres."""
 
-import threading
-
 import pytest
 from dynamic_reconfigure.encoding import Config
+from dynamic_reconfigure.server import Server
 from support.fake_drive import fake_model, load_plugin, run, turn, wheel_of
 
 from rosbots_description.ros_api.reconfigure import wheel_slip
@@ -89,12 +88,8 @@ def test_compliances_change_for_all_wheels_unless_negative():
 
 
 def test_dynamic_reconfigure_sets_the_compliances(monkeypatch):
-    monkeypatch.setattr(
-        wheel_slip.PluginReconfigure,
-        '__init__',
-        lambda self, *_: setattr(self, 'mutex', threading.Lock()),
-    )
+    monkeypatch.setattr(Server, '__init__', lambda *_: None)
     plugin = load(wheel())
-    server = wheel_slip.SlipReconfigure(plugin, lambda command: command())
+    server = wheel_slip.serve_slip(plugin, lambda command: command())
     server._reconfigure(Config({wheel_slip.LATERAL: 3.0, wheel_slip.LONGITUDINAL: -1.0}), 0)
     assert (plugin.wheels[0].lateral, plugin.wheels[0].longitudinal) == (3.0, 0.25)
