@@ -87,7 +87,7 @@ class Adapter:
         self.is_closed = False
         self._watch = SubscriberWatch(lambda: server.loop.post(self.refresh))
         self._opened: list[Callable[[], None]] = []  # functions to call in `close`
-        self.endpoints = self._with_valid_names([one.join(self) for one in declared])
+        self.endpoints = self._with_valid_names([declaration(self) for declaration in declared])
 
     def _with_valid_names(self, endpoints: 'list[Endpoint]') -> 'list[Endpoint]':
         invalid = {one.name for one in endpoints if one.name and not is_valid_name(one.name)}

@@ -37,7 +37,6 @@ from ...sim.sensors import (
     DepthCameraPlugin,
     Image,
     MultiCameraPlugin,
-    OpenniKinectPlugin,
     StampedInfo,
     TriggeredCameraPlugin,
     TriggeredMultiCameraPlugin,
@@ -217,4 +216,3 @@ declare_topics(MultiCameraPlugin, *_BOTH)
 declare_topics(TriggeredCameraPlugin, *_ONE, *_TRIGGERS[:1])
 declare_topics(TriggeredMultiCameraPlugin, *_BOTH, *_TRIGGERS[1:])
 declare_topics(DepthCameraPlugin, *_DEPTH)
-declare_topics(OpenniKinectPlugin, *_DEPTH)

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import Any, Protocol
+from typing import Any
 
 import rospy
 from genpy import Message
@@ -24,13 +24,6 @@ COMPLAINT_PERIOD = 5.0  # minimum time between two errors about invalid commands
 
 # Number of the header, time [ns] and reading -> the message as it goes over the wire.
 Serializer = Callable[[int, int, Any], bytes]
-
-
-class Declaration(Protocol):
-    """One topic or service of all plugins of a class."""
-
-    def join(self, adapter: Adapter) -> 'Endpoint':
-        """Return the endpoint of the adapter's plugin."""
 
 
 class Endpoint:
@@ -59,26 +52,8 @@ class Endpoint:
             logger.debug('%s%s', self.adapter.plugin.log_prefix, text.format(self.text))
 
 
-@dataclass(frozen=True)
-class Publishes:
-    """Publish the readings of an output on a topic, while it has subscribers."""
-
-    output: str
-    topic: str
-    message: type[Message]
-    convert: Callable[[Any], Message] = lambda reading: reading  # reading -> message
-    frame: str | None = None  # if given, fill in the header; a name that may contain <tag>
-    queue: int = 1
-    latch: bool = False
-    serializer: Callable[[Adapter], Serializer] | None = (
-        None  # replaces `convert` where speed matters
-    )
-    always: bool = False  # advertise even if the description does not request the output
-    log: str = ''  # debug message after advertising
-
-    def join(self, adapter: Adapter) -> 'PublishedTopic':
-        """Return the topic of the adapter's plugin."""
-        return PublishedTopic(adapter, self)
+# One topic or service of all plugins of a class: makes the endpoint of an adapter's plugin.
+Declaration = Callable[[Adapter], Endpoint]
 
 
 class PublishedTopic(Endpoint):
@@ -86,7 +61,7 @@ class PublishedTopic(Endpoint):
 
     _serialize: Serializer | None = None
 
-    def __init__(self, adapter: Adapter, declared: Publishes) -> None:
+    def __init__(self, adapter: Adapter, declared: 'Publishes') -> None:
         super().__init__(adapter, declared.topic)
         self.declared = declared
         self.publisher: rospy.Publisher | None = None
@@ -149,6 +124,29 @@ class PublishedTopic(Endpoint):
 
 
 @dataclass(frozen=True)
+class Publishes:
+    """Publish the readings of an output on a topic, while it has subscribers."""
+
+    output: str
+    topic: str
+    message: type[Message]
+    convert: Callable[[Any], Message] = lambda reading: reading  # reading -> message
+    frame: str | None = None  # if given, fill in the header; a name that may contain <tag>
+    queue: int = 1
+    latch: bool = False
+    serializer: Callable[[Adapter], Serializer] | None = (
+        None  # replaces `convert` where speed matters
+    )
+    always: bool = False  # advertise even if the description does not request the output
+    log: str = ''  # debug message after advertising
+    endpoint: type[PublishedTopic] = PublishedTopic
+
+    def __call__(self, adapter: Adapter) -> PublishedTopic:
+        """Return the topic of the adapter's plugin."""
+        return self.endpoint(adapter, self)
+
+
+@dataclass(frozen=True)
 class Subscribes:
     """Call a method of the plugin for each message of a topic, between two steps."""
 
@@ -161,7 +159,7 @@ class Subscribes:
     log_before: str = ''  # debug message before subscribing
     log: str = ''  # debug message after subscribing
 
-    def join(self, adapter: Adapter) -> 'SubscribedTopic':
+    def __call__(self, adapter: Adapter) -> 'SubscribedTopic':
         """Return the topic of the adapter's plugin."""
         return SubscribedTopic(adapter, self)
 
@@ -230,7 +228,7 @@ class Offers:
     # its name exists.
     make: Callable[[Adapter, str], Callable[[], None]]
 
-    def join(self, adapter: Adapter) -> 'Offered':
+    def __call__(self, adapter: Adapter) -> 'Offered':
         """Return the endpoint of the adapter's plugin."""
         return Offered(adapter, self)
 

@@ -14,7 +14,6 @@ Parameters:
 """
 
 import logging
-from dataclasses import dataclass
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -22,17 +21,9 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from ...sim.plugins import (
-    DiffDrive,
-    ForceBasedMove,
-    PlanarMove,
-    RidgebackForceBasedMove,
-    SkidSteerDrive,
-    TricycleDrive,
-)
+from ...sim.plugins import DiffDrive, ForceBasedMove, PlanarMove, SkidSteerDrive, TricycleDrive
 from ..server import STATIC_TOPIC
 from ..transport import set_level, subscriber_names, subscribers
-from .adapter import Adapter
 from .declarations import Endpoint, PublishedTopic, Publishes, Subscribes, finite
 from .registry import declare_topics
 from .serializers import (
@@ -45,17 +36,8 @@ from .serializers import (
 logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class LogsStart:
-    """What upstream does before it has any topic: it logs, and at another level if asked to."""
-
-    def join(self, adapter: Adapter) -> 'StartLog':
-        """Return what does so for the adapter's plugin."""
-        return StartLog(adapter)
-
-
 class StartLog(Endpoint):
-    """Sets the level of the log, and begins it."""
+    """What upstream does before it has any topic: it logs, and at another level if asked to."""
 
     def open(self) -> None:
         """Log what upstream logs."""
@@ -66,16 +48,11 @@ class StartLog(Endpoint):
         logger.debug('%s<tf_prefix> = %s', plugin.log_prefix, self.adapter.tf_prefix)
 
 
-class WheelStates(Publishes):
-    """The joint states of wheels, from which a robot_state_publisher may make their frames."""
-
-    def join(self, adapter: Adapter) -> 'WheelStatesTopic':
-        """Return the topic of the adapter's plugin."""
-        return WheelStatesTopic(adapter, self)
-
-
 class WheelStatesTopic(PublishedTopic):
-    """A topic that knows who reads it, and who soon will."""
+    """The joint states of wheels, from which a robot_state_publisher may make their frames.
+
+    The topic knows who reads it, and who soon will.
+    """
 
     _followers: frozenset[str] = frozenset()  # those that read it as soon as they can
 
@@ -95,16 +72,8 @@ class WheelStatesTopic(PublishedTopic):
         return self._followers | subscriber_names(self.publisher) if self.publisher else frozenset()
 
 
-class WheelFrames(Publishes):
-    """The frames of wheels, which are left to a robot_state_publisher if there is one."""
-
-    def join(self, adapter: Adapter) -> 'WheelFramesTopic':
-        """Return the topic of the adapter's plugin."""
-        return WheelFramesTopic(adapter, self)
-
-
 class WheelFramesTopic(PublishedTopic):
-    """A topic that is not for robots beside a robot_state_publisher.
+    """The frames of wheels, which are left to a robot_state_publisher if there is one.
 
     That is a node that subscribes to our joint states and publishes static transforms.
     """
@@ -154,19 +123,27 @@ TRANSFORM = Publishes(
     always=True,
 )
 WHEELS = (
-    WheelStates(
+    Publishes(
         'joint_states',
         DiffDrive.topic_names['joint_states'],
         JointState,
         serializer=JointStatesSerializer,
         queue=1000,
         log='Advertise joint_states',
+        endpoint=WheelStatesTopic,
     ),
-    WheelFrames('wheel_transform', '/tf', TFMessage, serializer=TransformSerializer, queue=100),
+    Publishes(
+        'wheel_transform',
+        '/tf',
+        TFMessage,
+        serializer=TransformSerializer,
+        queue=100,
+        endpoint=WheelFramesTopic,
+    ),
 )
 
-declare_topics(DiffDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
-declare_topics(SkidSteerDrive, LogsStart(), TRANSFORM, COMMAND, ODOMETRY)
-for moved in (PlanarMove, ForceBasedMove, RidgebackForceBasedMove):
-    declare_topics(moved, LogsStart(), TRANSFORM, SIDEWAYS, ODOMETRY)
-declare_topics(TricycleDrive, LogsStart(), *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
+for wheeled in (DiffDrive, TricycleDrive):
+    declare_topics(wheeled, StartLog, *WHEELS, TRANSFORM, COMMAND, ODOMETRY)
+declare_topics(SkidSteerDrive, StartLog, TRANSFORM, COMMAND, ODOMETRY)
+for moved in (PlanarMove, ForceBasedMove):
+    declare_topics(moved, StartLog, TRANSFORM, SIDEWAYS, ODOMETRY)

@@ -9,7 +9,6 @@ Publishes:
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import rospy
 from geometry_msgs.msg import Wrench
@@ -49,29 +48,12 @@ def actual_serializer(adapter: Adapter) -> Serializer:
     return lambda _number, now_ns, edge: layout.pack(now_ns, edge.pose)
 
 
-class Actual(Publishes):
-    """Where the link is, for other nodes; this one reads /tf, too, and need not be told."""
-
-    def join(self, adapter: Adapter) -> 'ActualTopic':
-        """Return the topic of the adapter's plugin."""
-        return ActualTopic(adapter, self)
-
-
 class ActualTopic(PublishedTopic):
-    """A topic that has a reader if another node reads it."""
+    """Where the link is, for other nodes; this one reads /tf, too, and need not be told."""
 
     def is_wanted(self) -> bool:
         """Tell whether another node reads it."""
         return super().is_wanted() and bool(subscriber_names(self.publisher) - {rospy.get_name()})
-
-
-@dataclass(frozen=True)
-class FollowsFrame:
-    """The link goes where TF has a frame."""
-
-    def join(self, adapter: Adapter) -> 'FollowedFrame':
-        """Return what leads the adapter's plugin."""
-        return FollowedFrame(adapter)
 
 
 class FollowedFrame(Endpoint):
@@ -129,6 +111,8 @@ def _from_root(name: str, edges: Mapping[str, tuple[str, Pose]]) -> tuple[str, P
 declare_topics(Force, Subscribes(Force.topic_names['command'], Wrench, 'command', read_wrench))
 declare_topics(
     HandOfGod,
-    Actual('actual', '/tf', TFMessage, serializer=actual_serializer, queue=100),
-    FollowsFrame(),
+    Publishes(
+        'actual', '/tf', TFMessage, serializer=actual_serializer, queue=100, endpoint=ActualTopic
+    ),
+    FollowedFrame,
 )

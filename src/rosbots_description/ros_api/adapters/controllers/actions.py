@@ -56,7 +56,7 @@ class Acts:
     # Reading of the followed goal's output `feedback` -> message; None: it has no such output.
     feedback: Callable[[Any], Message] | None = None
 
-    def join(self, adapter: Adapter) -> 'ActionServer':
+    def __call__(self, adapter: Adapter) -> 'ActionServer':
         """Return the server of the adapter's controller."""
         return ActionServer(adapter, self)
 
@@ -125,8 +125,7 @@ class ActionServer(Endpoint, Hook):
         if not given.stamp:
             given.stamp = stamp(now_ns)
         elif self._last_cancel and given.stamp <= self._last_cancel:
-            goal = self._goals[given.id] = _Goal(GoalStatus(given, GoalStatus.PENDING, ''))
-            goal.status.status, goal.status.text = GoalStatus.RECALLED, _TOO_LATE
+            goal = self._goals[given.id] = _Goal(GoalStatus(given, GoalStatus.RECALLED, _TOO_LATE))
             self._close(goal, self._declared.action().action_result.result)
             return
         followed = self._declared.follow(self.adapter.plugin, message.goal)

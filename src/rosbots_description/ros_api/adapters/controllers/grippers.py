@@ -26,11 +26,6 @@ def follow(controller: GripperActionController, goal: GripperCommandGoal) -> Gri
         return rejected
 
 
-def cancel(controller: GripperActionController, goal: GripperGoal) -> None:
-    """Cancel a goal."""
-    controller.cancel(goal)
-
-
 def result(goal: GripperGoal) -> GripperCommandResult:
     """Return the result of a goal that has ended."""
     return GripperCommandResult(*goal.result)
@@ -39,6 +34,10 @@ def result(goal: GripperGoal) -> GripperCommandResult:
 connects_controller(
     GripperActionController,
     Acts(
-        GripperActionController.topic_names['follow'], GripperCommandAction, follow, cancel, result
+        GripperActionController.topic_names['follow'],
+        GripperCommandAction,
+        follow,
+        GripperActionController.cancel,
+        result,
     ),
 )

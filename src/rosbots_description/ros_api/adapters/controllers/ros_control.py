@@ -15,7 +15,6 @@ What controllers alone need is imported when a robot has them.
 
 import logging
 import threading
-from dataclasses import dataclass
 from typing import cast
 
 import rospy
@@ -34,15 +33,6 @@ logger = logging.getLogger(__name__)
 
 PERIOD = 0.1  # between two looks for the description [s, wall], as upstream
 SETTINGS = ('joint_limits', 'gazebo_ros_control')  # parameters of the simulated hardware
-
-
-@dataclass(frozen=True)
-class Controls:
-    """Everything that ROS sees of a robot's controllers."""
-
-    def join(self, adapter: Adapter) -> 'ControlEndpoint':
-        """Return the endpoint of the adapter's plugin."""
-        return ControlEndpoint(adapter)
 
 
 class ControlEndpoint(Endpoint):
@@ -174,17 +164,11 @@ class ControlEndpoint(Endpoint):
         self._topics.set_to(list(self._plugin.controllers.values()))
 
 
-@dataclass(frozen=True)
-class ReadsGains:
-    """The gains of a joint that follows another one by a force."""
-
-    def join(self, adapter: Adapter) -> 'MimicGains':
-        """Return the endpoint of the adapter's plugin."""
-        return MimicGains(adapter)
-
-
 class MimicGains(Endpoint):
-    """Reads the gains from the parameter server, and opens them to dynamic_reconfigure."""
+    """The gains of a joint that follows another one by a force.
+
+    They are read from the parameter server, and opened to dynamic_reconfigure.
+    """
 
     def __init__(self, adapter: Adapter) -> None:
         super().__init__(adapter)
@@ -214,5 +198,5 @@ class MimicGains(Endpoint):
         adapter.server.loop.post(configure)
 
 
-declare_topics(RosControl, Controls())
-declare_topics(MimicJointPlugin, ReadsGains())
+declare_topics(RosControl, ControlEndpoint)
+declare_topics(MimicJointPlugin, MimicGains)

@@ -5,7 +5,6 @@ Publishes:
 """
 
 import logging
-from dataclasses import dataclass
 from typing import cast
 
 from geometry_msgs.msg import WrenchStamped
@@ -20,15 +19,6 @@ from ..wrenches import wrench_message
 from .topics import connects_controller
 
 logger = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class ReportsSensors:
-    """A topic for each sensor."""
-
-    def join(self, adapter: Adapter) -> 'SensorTopics':
-        """Return the topics of the adapter's controller."""
-        return SensorTopics(adapter)
 
 
 class SensorTopics(Endpoint):
@@ -51,7 +41,7 @@ class SensorTopics(Endpoint):
                 if controller.interface == IMU
                 else Publishes(sensor, sensor, WrenchStamped, convert=wrench_message, frame=frame)
             )
-            self._topics.append(PublishedTopic(adapter, declared))
+            self._topics.append(declared(adapter))
 
     def open(self) -> None:
         """Advertise them."""
@@ -73,4 +63,4 @@ def _imu(sensor: str, frame: str) -> Publishes:
     return Publishes(sensor, sensor, Imu, serializer=lambda _adapter: ImuLayout(frame).pack)
 
 
-connects_controller(SensorController, ReportsSensors())
+connects_controller(SensorController, SensorTopics)

@@ -65,31 +65,18 @@ class ManagerServices:
         self._namespace = plugin.namespace
         self._one_at_a_time = threading.Lock()
         self._services: list[rospy.Service] = []
-        handlers: dict[type, Handler] = {
-            ListControllers: self._list,
-            ListControllerTypes: self._types,
-            LoadController: self._load,
-            UnloadController: self._unload,
-            SwitchController: self._switch,
-            ReloadControllerLibraries: self._reload,
+        handlers: dict[str, tuple[type, Handler]] = {
+            'list_controllers': (ListControllers, self._list),
+            'list_controller_types': (ListControllerTypes, self._types),
+            'load_controller': (LoadController, self._load),
+            'unload_controller': (UnloadController, self._unload),
+            'switch_controller': (SwitchController, self._switch),
+            'reload_controller_libraries': (ReloadControllerLibraries, self._reload),
         }
-        names = (
-            'list_controllers',
-            'list_controller_types',
-            'load_controller',
-            'unload_controller',
-            'switch_controller',
-            'reload_controller_libraries',
-        )
         try:
-            for name, (kind, handler) in zip(names, handlers.items(), strict=True):
-                self._services.append(
-                    rospy.Service(
-                        topic_name(self._namespace, f'controller_manager/{name}'),
-                        kind,
-                        self._guarded(handler),
-                    )
-                )
+            for name, (kind, handler) in handlers.items():
+                path = topic_name(self._namespace, f'controller_manager/{name}')
+                self._services.append(rospy.Service(path, kind, self._guarded(handler)))
         except rospy.ServiceException:
             self.close()
             raise

@@ -19,8 +19,7 @@ Services and more:
 
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import rospy
 from control_msgs.msg import JointControllerState, JointTrajectoryControllerState
@@ -59,17 +58,8 @@ from .trajectory_messages import fill_state
 logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class TunesGains:
-    """The gains of a controller's PIDs, for dynamic_reconfigure."""
-
-    def join(self, adapter: Adapter) -> 'GainsEndpoint':
-        """Return the endpoint of the adapter's controller."""
-        return GainsEndpoint(adapter)
-
-
 class GainsEndpoint(Endpoint):
-    """Opens a server of dynamic_reconfigure for each PID."""
+    """The gains of a controller's PIDs: a server of dynamic_reconfigure for each."""
 
     def open(self) -> None:
         """Advertise the gains."""
@@ -99,12 +89,7 @@ def open_gains(adapter: Adapter, pids: Mapping[str, Pid]) -> None:
 
 def connects_controller(owner: type[Controller], *declared: Declaration) -> None:
     """Give the controllers of a class these topics, and those of their gains."""
-    declare_topics(owner, *declared, TunesGains())
-
-
-def read_data(message: Float64 | Float64MultiArray) -> tuple[Any, ...]:
-    """Return the argument of `command`: a number, or one for each joint."""
-    return (message.data,)
+    declare_topics(owner, *declared, GainsEndpoint)
 
 
 def twist_message(twist: Velocity) -> TwistStamped:
@@ -168,8 +153,11 @@ def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
     return serve_settings(controller, name, adapter.server.loop.post).close
 
 
-GROUP = Subscribes('command', Float64MultiArray, 'command', read_data)
-SINGLE = Subscribes('command', Float64, 'command', read_data)
+# The argument of `command` is a number, or one for each joint.
+SINGLE, GROUP = (
+    Subscribes('command', kind, 'command', lambda message: (message.data,))
+    for kind in (Float64, Float64MultiArray)
+)
 STATE = Publishes('state', 'state', JointControllerState, convert=pid_state_message, frame='')
 COMMAND, SIDEWAYS = (
     Subscribes(DriveController.topic_names['command'], Twist, 'command', finite(*fields))

@@ -12,7 +12,7 @@ Services:
 
 import logging
 from collections.abc import Callable, Sequence
-from typing import Any, cast
+from typing import cast
 
 import rospy
 from control_msgs.msg import (
@@ -84,11 +84,6 @@ def follow(controller: JointTrajectoryController, goal: FollowJointTrajectoryGoa
     )
 
 
-def cancel(controller: JointTrajectoryController, goal: FollowedGoal) -> None:
-    """Cancel a goal."""
-    controller.cancel(goal)
-
-
 def result(goal: FollowedGoal) -> FollowJointTrajectoryResult:
     """Return the result of a goal that has ended."""
     return FollowJointTrajectoryResult(goal.error_code, goal.error_string)
@@ -110,13 +105,11 @@ def offer_query(adapter: Adapter, name: str) -> Callable[[], None]:
     return shutdown
 
 
-def _play_arguments(message: JointTrajectory) -> tuple[Any, ...]:
-    return (read_trajectory(message),)
-
-
 connects_controller(
     JointTrajectoryController,
-    Subscribes(_TOPICS['play'], JointTrajectory, 'play', _play_arguments),
+    Subscribes(
+        _TOPICS['play'], JointTrajectory, 'play', lambda message: (read_trajectory(message),)
+    ),
     Publishes(
         'state',
         _TOPICS['state'],
@@ -128,7 +121,7 @@ connects_controller(
         _TOPICS['follow'],
         FollowJointTrajectoryAction,
         follow,
-        cancel,
+        JointTrajectoryController.cancel,
         result,
         lambda state: fill_state(FollowJointTrajectoryFeedback(), state),
     ),
