@@ -8,15 +8,13 @@ Publishes:
     /tf (tf2_msgs/TFMessage): hand_of_god, world to <frameId>_actual in each step once it follows.
 """
 
-from collections.abc import Mapping
-
 import rospy
 from geometry_msgs.msg import Wrench
 from tf2_msgs.msg import TFMessage
 
-from ...sim.core import IDENTITY, Pose, compose, relative
+from ...sim.core import Pose, relative
 from ...sim.plugins import Force, HandOfGod
-from ..messages import TransformLayout, read_transform
+from ..messages import Parents, TransformLayout, frames_above, read_transforms
 from ..server import STATIC_TOPIC
 from ..transport import subscriber_names
 from .adapter import Adapter
@@ -75,12 +73,7 @@ class FollowedFrame(Endpoint):
         self._update()
 
     def _receive(self, message: TFMessage) -> None:
-        for edge in message.transforms:
-            try:
-                pose = read_transform(edge.transform)
-            except ValueError:
-                continue  # as TF leaves it out
-            self._edges[edge.child_frame_id.lstrip('/')] = edge.header.frame_id.lstrip('/'), pose
+        self._edges |= read_transforms(message)
         self._update()
 
     def _update(self) -> None:
@@ -91,21 +84,10 @@ class FollowedFrame(Endpoint):
             server.loop.post(lambda: plugin.follow(pose))
 
 
-def pose_between(frame: str, child: str, edges: Mapping[str, tuple[str, Pose]]) -> Pose | None:
+def pose_between(frame: str, child: str, edges: Parents) -> Pose | None:
     """Return the pose of `child` in `frame`; None if no edges lead from one to the other."""
-    (root, base), (other, pose) = (_from_root(name, edges) for name in (frame, child))
+    (root, base), (other, pose) = (list(frames_above(name, edges))[-1] for name in (frame, child))
     return relative(pose, base) if root == other else None
-
-
-def _from_root(name: str, edges: Mapping[str, tuple[str, Pose]]) -> tuple[str, Pose]:
-    pose, seen = IDENTITY, {name}
-    while name in edges:
-        name, edge = edges[name]
-        pose = compose(edge, pose)
-        if name in seen:
-            break
-        seen.add(name)
-    return name, pose
 
 
 declare_topics(Force, Subscribes(Force.topic_names['command'], Wrench, 'command', read_wrench))

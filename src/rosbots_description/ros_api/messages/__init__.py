@@ -5,12 +5,12 @@ from .conversions import (
     fill_transform,
     fill_twist,
     read_pose,
-    read_transform,
     read_twist,
     read_vector,
     stamp,
 )
 from .fields import number_getter, number_paths
+from .frames import Parents, frames_above, read_transforms
 from .layouts import (
     ImuLayout,
     JointStatesLayout,
@@ -40,6 +40,7 @@ __all__ = [
     'JointStatesLayout',
     'LaserScanLayout',
     'OdometryLayout',
+    'Parents',
     'PointCloudLayout',
     'RequestError',
     'TransformLayout',
@@ -48,6 +49,7 @@ __all__ = [
     'fill_transform',
     'fill_twist',
     'floats',
+    'frames_above',
     'map_cells',
     'motion_message',
     'number_getter',
@@ -56,7 +58,7 @@ __all__ = [
     'read_motion',
     'read_pose',
     'read_reading',
-    'read_transform',
+    'read_transforms',
     'read_twist',
     'read_vector',
     'require_finite',

@@ -11,21 +11,19 @@ Subscribes:
 """
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import rospy
 from tf2_msgs.msg import TFMessage
 
 from ...sim.core import Pose, compose, inverse
 from ...sim.runtime import FrameTransform
-from ..messages import read_transform
+from ..messages import Parents, read_transforms
 from ..transport import publisher_names, sender_of
 from .loop import Loop
 
 STATIC_TOPIC = '/tf_static'
 PERIOD = 0.5  # how often it is checked which publishers still exist [s, wall]
-
-Parents = Mapping[str, tuple[str, Pose]]  # by frame: its parent, and its pose in the parent
 
 
 class StaticFrames:
@@ -60,15 +58,7 @@ class StaticFrames:
 
     def add(self, node: str, message: TFMessage) -> None:
         """Store the transforms of a node; invalid ones are ignored, as in TF."""
-        transforms = dict(self._by_node.get(node, ()))
-        for transform in message.transforms:
-            try:
-                pose = read_transform(transform.transform)
-            except ValueError:
-                continue
-            parent, child = transform.header.frame_id, transform.child_frame_id
-            transforms[child.lstrip('/')] = parent.lstrip('/'), pose
-        self._by_node[node] = transforms
+        self._by_node[node] = self._by_node.get(node, {}) | read_transforms(message)
         self._merge()
 
     def expect(self, nodes: set[str]) -> None:

@@ -4,14 +4,13 @@ Subscribes:
     /tf, /tf_static: while a frame is looked for, and while one is that moves.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 import rospy
-from geometry_msgs.msg import Transform
 from tf2_msgs.msg import TFMessage
 
-from ...sim.core import IDENTITY, Pose, compose, inverse
-from ..messages import read_transform
+from ...sim.core import Pose, inverse
+from ..messages import frames_above, read_transforms
 
 TOPICS = '/tf', '/tf_static'
 
@@ -27,7 +26,7 @@ class FrameFinder:
     """
 
     def __init__(self) -> None:
-        self._parents: dict[str, tuple[str, Transform]] = {}  # and where a frame is in it
+        self._parents: dict[str, tuple[str, Pose]] = {}  # and the pose of a frame in it
         self._subscribers: list[rospy.Subscriber] = []
         self._fixed: dict[str, tuple[str, Pose]] = {}
         self._followed: set[str] = set()  # frames that are missing, or move
@@ -40,13 +39,17 @@ class FrameFinder:
         Args:
             links: names of links; a frame with a prefix is also looked for without it.
         """
+        frame = frame.lstrip('/')
         found = self._fixed.get(frame)
         if found is None or found[0] not in links:
-            found = _above(self._ways(frame), links)
+            above = frames_above(frame, self._parents)
+            found = next(
+                ((link, pose) for name, pose in above if (link := _link(name, links))), None
+            )
             if found is None:
                 self._followed.add(frame)
                 self._listen()
-                return self._below(frame.lstrip('/'), links)
+                return self._below(frame, links)
             self._fixed[frame] = found
         self._followed.discard(frame)
         if not self._followed:
@@ -72,43 +75,18 @@ class FrameFinder:
         self._subscribers = []
 
     @staticmethod
-    def _hear(message: TFMessage, parents: dict[str, tuple[str, Transform]]) -> None:
-        for one in message.transforms:
-            parents[one.child_frame_id.lstrip('/')] = (
-                one.header.frame_id.lstrip('/'),
-                one.transform,
-            )
-
-    def _ways(self, frame: str) -> Iterator[tuple[str, Pose]]:
-        """Yield a frame and those above it, the nearest first, with its pose in each."""
-        above, pose, seen = frame.lstrip('/'), IDENTITY, set[str]()
-        while above not in seen:
-            yield above, pose
-            seen.add(above)
-            if above in self._parents:
-                above, transform = self._parents[above]
-                try:
-                    pose = compose(read_transform(transform), pose)
-                except ValueError:  # it is no pose
-                    return
+    def _hear(message: TFMessage, parents: dict[str, tuple[str, Pose]]) -> None:
+        parents.update(read_transforms(message))
 
     def _below(self, frame: str, links: Collection[str]) -> tuple[str, Pose] | None:
         """Return the link with the shortest way up to a frame, and the frame's pose in it."""
-        found: list[tuple[int, str, Pose]] = []
-        for child in [name for name in list(self._parents) if _link(name, links)]:
-            for steps, (above, pose) in enumerate(self._ways(child)):
-                if above == frame:
-                    found.append((steps, child, inverse(pose)))
-        if not found:
-            return None
-        _, child, pose = min(found, key=lambda one: one[:2])
-        link = _link(child, links)
-        assert link is not None
-        return link, pose
-
-
-def _above(ways: Iterator[tuple[str, Pose]], links: Collection[str]) -> tuple[str, Pose] | None:
-    return next(((link, pose) for above, pose in ways if (link := _link(above, links))), None)
+        found: list[tuple[int, str, str, Pose]] = []
+        for child in list(self._parents):
+            if link := _link(child, links):
+                for steps, (above, pose) in enumerate(frames_above(child, self._parents)):
+                    if above == frame:
+                        found.append((steps, child, link, inverse(pose)))
+        return min(found, key=lambda one: one[:2])[2:] if found else None
 
 
 def _link(frame: str, links: Collection[str]) -> str | None:
