@@ -54,7 +54,7 @@ def interruptibly(function: Callable[[], Result], timeout: float = math.inf) -> 
     return outcome.result()
 
 
-def _call(service: str, service_class: type[Any], **request: object) -> Message | None:
+def _call(service: str, service_class: type[Any], *request: object) -> Message | None:
     """Wait without limit for the service and call it.
 
     Returns:
@@ -66,7 +66,7 @@ def _call(service: str, service_class: type[Any], **request: object) -> Message 
     interruptibly(lambda: rospy.wait_for_service(service))
     rospy.loginfo('Calling service %s', service)
     try:
-        return interruptibly(lambda: rospy.ServiceProxy(service, service_class)(**request))
+        return interruptibly(lambda: rospy.ServiceProxy(service, service_class)(*request))
     except rospy.ServiceException as error:
         if rospy.is_shutdown():
             raise rospy.ROSInterruptException('shut down during the call') from error
@@ -74,27 +74,11 @@ def _call(service: str, service_class: type[Any], **request: object) -> Message 
         return None
 
 
-def _spawn(
-    service: str,
-    *,
-    model_name: str,
-    model_xml: str,
-    robot_namespace: str,
-    initial_pose: Pose,
-    reference_frame: str,
-) -> bool | None:
-    response = _call(
-        service,
-        SpawnModel,
-        model_name=model_name,
-        model_xml=model_xml,
-        robot_namespace=robot_namespace,
-        initial_pose=initial_pose,
-        reference_frame=reference_frame,
-    )
+def _report(what: str, response: Message | None) -> bool | None:
+    """Log the status of a response; return whether it worked, None after a call error."""
     if response is None:
         return None
-    rospy.loginfo('Spawn status: %s', response.status_message)
+    rospy.loginfo(f'{what} status: %s', response.status_message)
     return bool(response.success)
 
 
@@ -118,14 +102,9 @@ def spawn_sdf_model_client(
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
     """
-    return _spawn(
-        gazebo_namespace + '/spawn_sdf_model',
-        model_name=model_name,
-        model_xml=model_xml,
-        robot_namespace=robot_namespace,
-        initial_pose=initial_pose,
-        reference_frame=reference_frame,
-    )
+    service = gazebo_namespace + '/spawn_sdf_model'
+    request = model_name, model_xml, robot_namespace, initial_pose, reference_frame
+    return _report('Spawn', _call(service, SpawnModel, *request))
 
 
 def spawn_urdf_model_client(
@@ -137,14 +116,9 @@ def spawn_urdf_model_client(
     gazebo_namespace: str,
 ) -> bool | None:
     """Spawn a model given as URDF; otherwise like spawn_sdf_model_client."""
-    return _spawn(
-        gazebo_namespace + '/spawn_urdf_model',
-        model_name=model_name,
-        model_xml=model_xml,
-        robot_namespace=robot_namespace,
-        initial_pose=initial_pose,
-        reference_frame=reference_frame,
-    )
+    service = gazebo_namespace + '/spawn_urdf_model'
+    request = model_name, model_xml, robot_namespace, initial_pose, reference_frame
+    return _report('Spawn', _call(service, SpawnModel, *request))
 
 
 def set_model_configuration_client(
@@ -163,15 +137,6 @@ def set_model_configuration_client(
     Raises:
         rospy.ROSInterruptException: the node was shut down first.
     """
-    response = _call(
-        gazebo_namespace + '/set_model_configuration',
-        SetModelConfiguration,
-        model_name=model_name,
-        urdf_param_name=model_param_name,
-        joint_names=list(joint_names),
-        joint_positions=list(joint_positions),
-    )
-    if response is None:
-        return None
-    rospy.loginfo('Set model configuration status: %s', response.status_message)
-    return bool(response.success)
+    service = gazebo_namespace + '/set_model_configuration'
+    request = model_name, model_param_name, list(joint_names), list(joint_positions)
+    return _report('Set model configuration', _call(service, SetModelConfiguration, *request))
