@@ -5,19 +5,13 @@ Publishes:
         is gone; a new simulator clears the scene and shows its own markers.
 """
 
-import socket
 from collections.abc import Callable
-from typing import TYPE_CHECKING
-from urllib.parse import urlsplit
 
+import rospy
 from rosgraph.names import make_caller_id, resolve_name
 
-from ..transport import node_address
+from ..transport import accepts_connections, node_address
 
-if TYPE_CHECKING:
-    import rospy
-
-TIMEOUT = 2.0  # for the simulator to accept a connection [s, wall]
 NOTICE = 'the simulator has ended'
 NODE = 'gazebo'
 MARKERS_TOPIC = 'gazebo/view/markers'
@@ -48,20 +42,11 @@ class ServerWatch:
             self._report(is_up)
 
     def _is_reachable(self) -> bool:
-        if self._address is not None and _accepts_connections(self._address):
+        if self._address is not None and accepts_connections(self._address):
             return True
         # A killed simulator is still registered with the master.
         self._address = node_address(self._node, '/gzclient')
-        return self._address is not None and _accepts_connections(self._address)
-
-
-def _accepts_connections(address: str) -> bool:
-    place = urlsplit(address)
-    try:
-        socket.create_connection((place.hostname, place.port), TIMEOUT).close()
-    except OSError:
-        return False
-    return True
+        return self._address is not None and accepts_connections(self._address)
 
 
 class Notice:
@@ -72,8 +57,7 @@ class Notice:
 
     def show(self) -> None:
         """Show in the scene that the simulator has ended."""
-        import rospy  # seldom needed, slow to import
-        from visualization_msgs.msg import MarkerArray
+        from visualization_msgs.msg import MarkerArray  # seldom needed, slow to import
 
         from ..transport import init_node, is_node
         from ..views.markers import notice

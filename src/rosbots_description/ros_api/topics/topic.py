@@ -5,24 +5,9 @@ from genpy import Message
 
 from ...sim.runtime import NEVER, Listener
 from ..server import Server
+from ..transport import SubscriberWatch
 
 QUEUE = 10  # messages that may wait for a slow subscriber, as upstream
-
-
-class _Subscribers(rospy.SubscribeListener):  # type: ignore[misc]  # rospy has no types
-    """Reschedules a topic, on the world's thread, when its subscribers change."""
-
-    def __init__(self, server: Server, topic: 'Topic') -> None:
-        self._server = server
-        self._topic = topic
-
-    def peer_subscribe(self, _topic: str, _publish: object, _peer_publish: object) -> None:
-        """Handle a new subscriber."""
-        self._server.loop.post(self._topic.schedule)
-
-    def peer_unsubscribe(self, _topic: str, _count: int) -> None:
-        """Handle the loss of a subscriber."""
-        self._server.loop.post(self._topic.schedule)
 
 
 class Topic(Listener):
@@ -30,9 +15,8 @@ class Topic(Listener):
 
     def __init__(self, server: Server, name: str, message_class: type[Message]) -> None:
         self._world = server.world
-        self._publisher = rospy.Publisher(
-            name, message_class, _Subscribers(server, self), queue_size=QUEUE
-        )
+        watch = SubscriberWatch(lambda: server.loop.post(self.schedule))
+        self._publisher = rospy.Publisher(name, message_class, watch, queue_size=QUEUE)
 
     def schedule(self) -> None:
         """Publish from the next step on, if there are subscribers."""

@@ -17,7 +17,13 @@ from .master import (
     use_simulated_time,
     write_parameters,
 )
-from .name_conflict import node_name, replacing_node, require_free, running_node
+from .name_conflict import (
+    accepts_connections,
+    node_name,
+    replacing_node,
+    require_free,
+    running_node,
+)
 from .names import (
     find_tf_prefix,
     frame_name,
@@ -47,6 +53,7 @@ __all__ = [
     'FaultLog',
     'Registrar',
     'SubscriberWatch',
+    'accepts_connections',
     'caller_waits',
     'connect_logging',
     'find_tf_prefix',

@@ -38,6 +38,16 @@ class RunningNode:
         return f'{which} on {urlsplit(self.uri).hostname} ({self.uri})'
 
 
+def accepts_connections(uri: str) -> bool:
+    """Tell whether something listens at the address of a node."""
+    where = urlsplit(uri)
+    try:
+        socket.create_connection((where.hostname, where.port), TIMEOUT).close()
+    except OSError:
+        return False
+    return True
+
+
 def node_name(name: str, arguments: Sequence[str]) -> str:
     """Return the global name of a node with these ROS arguments, such as `__name:=gazebo`."""
     own = load_mappings(arguments).get('__name', name).strip('/')
@@ -54,10 +64,7 @@ def running_node(name: str) -> RunningNode | None:
         uri = rosgraph.Master(name).lookupNode(name)
     except rosgraph.MasterException:
         return None
-    where = urlsplit(uri)
-    try:
-        socket.create_connection((where.hostname, where.port), TIMEOUT).close()
-    except OSError:
+    if not accepts_connections(uri):
         return None  # stale entry of a killed node
     try:
         node: Any = ServerProxy(uri, transport=_TimeoutTransport())
