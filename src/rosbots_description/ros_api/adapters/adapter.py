@@ -3,13 +3,13 @@
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import rospy
 from genpy import Message
 
 from ...sim.core import SimError
-from ...sim.runtime import Model, Output
+from ...sim.plugins import ModelPlugin
 from ..server import Server
 from ..transport import (
     SubscriberWatch,
@@ -22,51 +22,12 @@ from ..transport import (
 )
 
 if TYPE_CHECKING:
+    from ...sim.controllers import Controller
     from .declarations import Declaration, Endpoint
 
+HasTopics: TypeAlias = 'ModelPlugin | Controller'
+
 logger = logging.getLogger(__name__)
-
-
-class Tags(Protocol):
-    """The tags of a plugin, or the parameters of a controller."""
-
-    @property
-    def values(self) -> Mapping[str, str | float | bool]:
-        """Those that were read, by name."""
-
-    def string(self, tag: str) -> str | None:
-        """Return one as text."""
-
-    def fill(self, template: str) -> str:
-        """Return `template` with `<tag>` replaced by the value of that tag."""
-
-
-class Named(Protocol):
-    """The description of a plugin or controller."""
-
-    @property
-    def name(self) -> str:
-        """Its name in the description."""
-
-
-class HasTopics(Protocol):
-    """A plugin, or a controller."""
-
-    @property
-    def model(self) -> Model:
-        """The model that it belongs to."""
-
-    @property
-    def spec(self) -> Named:
-        """Its description."""
-
-    @property
-    def params(self) -> Tags:
-        """Its tags or parameters."""
-
-    namespace: str
-    log_prefix: str
-    outputs: dict[str, Output[Any]]
 
 
 class Adapter:

@@ -16,6 +16,7 @@ from sensor_msgs.msg import Image
 
 from ...sim.core import yaw_of
 from ...sim.rendering import EYE, TARGET
+from ..messages import read_quaternion, read_vector
 from .planar_sample import PlanarSample
 
 _PERIOD = 0.04  # [s] wall time between two polls of the simulator
@@ -185,11 +186,6 @@ def _offered(service: str) -> bool:
 
 
 def _sample(stamp: rospy.Time, pose: Pose) -> PlanarSample:
-    q = pose.orientation
-    return PlanarSample(
-        stamp.to_sec(),
-        time.monotonic(),
-        pose.position.x,
-        pose.position.y,
-        yaw_of((q.x, q.y, q.z, q.w)),
-    )
+    x, y, _ = read_vector(pose.position)
+    yaw = yaw_of(read_quaternion(pose.orientation))
+    return PlanarSample(stamp.to_sec(), time.monotonic(), x, y, yaw)

@@ -14,10 +14,10 @@ import rospy
 from controller_manager_msgs.srv import ListControllers, SwitchController
 
 from ..clients.gazebo_interface import interruptibly
-from ..transport import is_running, start_node
+from ..transport import is_running
+from . import program
 from .calls import BEST_EFFORT, MANAGER, RUNNING, call, switch
 
-DONE, FAILED = 0, 1  # exit codes
 _PERIOD = 3.0  # [s] between two looks for controllers that somebody has started again
 _POLL = 0.05  # [s] wall time between polls of the shutdown flag
 _LAST_CALL = 5.0  # [s] wall time that each of the last two calls may take at the end
@@ -33,23 +33,7 @@ def run(names: Sequence[str], arguments: Sequence[str]) -> int:
     Returns:
         Exit code: 0; 1 if the controller manager ends meanwhile.
     """
-    start_node('unspawner', arguments, anonymous=True)
-    unspawner = Unspawner(names)
-    rospy.on_shutdown(unspawner.start_again)
-    try:
-        while is_running():
-            unspawner.stop()
-            begun = rospy.get_time()
-            # The time may be set back.
-            while is_running() and begun <= rospy.get_time() < begun + _PERIOD:
-                time.sleep(_POLL)
-    except rospy.ROSInterruptException:
-        pass
-    except rospy.ServiceException as error:
-        if is_running():
-            rospy.logerr('unspawner: %s', error)
-            return FAILED
-    return DONE
+    return program.run('unspawner', arguments, Unspawner(names).inhibit)
 
 
 class Unspawner:
@@ -60,6 +44,16 @@ class Unspawner:
         self._stopped: set[str] = set()
         self._ending = False
         self._stopping = threading.Lock()
+
+    def inhibit(self) -> None:
+        """Keep them stopped until the node is shut down; then start them again."""
+        rospy.on_shutdown(self.start_again)
+        while is_running():
+            self.stop()
+            begun = rospy.get_time()
+            # The time may be set back.
+            while is_running() and begun <= rospy.get_time() < begun + _PERIOD:
+                time.sleep(_POLL)
 
     def stop(self) -> None:
         """Stop those that run.

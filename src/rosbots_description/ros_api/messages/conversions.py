@@ -9,9 +9,10 @@ import math
 from genpy import Time
 from geometry_msgs.msg import Point, Transform, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
+from geometry_msgs.msg import Quaternion as QuaternionMessage
 from geometry_msgs.msg import Twist as TwistMessage
 
-from ...sim.core import Pose, Twist, Vector, normalise
+from ...sim.core import Pose, Quaternion, Twist, Vector, normalise
 
 
 def stamp(now_ns: int) -> Time:
@@ -47,8 +48,7 @@ def read_pose(message: PoseMessage) -> Pose:
         ValueError: a number is NaN or infinite.
 
     """
-    p, q = message.position, message.orientation
-    pose = Pose((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+    pose = Pose(read_vector(message.position), read_quaternion(message.orientation))
     if not all(math.isfinite(number) for part in pose for number in part):
         raise ValueError('the pose holds a number that is not finite')
     return Pose(pose.position, normalise(pose.orientation))
@@ -63,6 +63,11 @@ def read_transform(message: Transform) -> Pose:
 def read_vector(message: Point | Vector3) -> Vector:
     """Return a message's three numbers."""
     return (message.x, message.y, message.z)
+
+
+def read_quaternion(message: QuaternionMessage) -> Quaternion:
+    """Return a message's four numbers, as they are."""
+    return (message.x, message.y, message.z, message.w)
 
 
 def read_twist(message: TwistMessage) -> Twist:

@@ -8,7 +8,7 @@ from genpy import Message
 
 from ...sim.runtime import JointStates, Odometry
 from ...sim.sensors import Distance, ImuReading, JointWrench, Scan
-from .conversions import read_pose, read_twist, read_vector
+from .conversions import read_pose, read_quaternion, read_twist, read_vector
 
 
 def _scan(message: Message) -> Scan:
@@ -24,9 +24,8 @@ def _scan(message: Message) -> Scan:
 
 
 def _imu(message: Message) -> ImuReading:
-    q = message.orientation
     return ImuReading(
-        (q.x, q.y, q.z, q.w),
+        read_quaternion(message.orientation),
         read_vector(message.angular_velocity),
         read_vector(message.linear_acceleration),
     )

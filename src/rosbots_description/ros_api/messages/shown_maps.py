@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...sim.core import SimError
 from ...sim.description import ShownGrid, ShownReading
-from .conversions import read_pose
+from .conversions import read_pose, read_quaternion, read_vector
 
 WIDEST = 2048  # cells along an edge of a shown map; larger ones are shown with larger cells
 MOST_POSES = 5000  # that are shown of a path or a cloud; of more, every second, third … is
@@ -135,20 +135,9 @@ def _numbers(poses: Sequence[PoseMessage]) -> NDArray[np.float64]:
     """Return lifted positions and unit quaternions (n, 7) of the poses that are poses."""
     shown = poses[:: max(1, -(-len(poses) // MOST_POSES))]
     numbers = np.array(
-        [
-            (
-                p.position.x,
-                p.position.y,
-                p.position.z + LIFT,
-                p.orientation.x,
-                p.orientation.y,
-                p.orientation.z,
-                p.orientation.w,
-            )
-            for p in shown
-        ],
-        float,
+        [(*read_vector(one.position), *read_quaternion(one.orientation)) for one in shown], float
     ).reshape(-1, 7)
+    numbers[:, 2] += LIFT
     norms = np.linalg.norm(numbers[:, 3:], axis=1, keepdims=True)
     with np.errstate(divide='ignore', invalid='ignore'):
         numbers[:, 3:] = np.where(norms == 0.0, (0.0, 0.0, 0.0, 1.0), numbers[:, 3:] / norms)
