@@ -3,6 +3,7 @@
 import logging
 from contextlib import closing
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import pytest
 import rospy
@@ -20,6 +21,9 @@ IMAGE, INFO, CLOUD = 'sensor_msgs/Image', 'sensor_msgs/CameraInfo', 'sensor_msgs
 WRENCH, TF = 'geometry_msgs/WrenchStamped', 'tf2_msgs/TFMessage'
 RELATIVE = ('>/scan<', '>scan<')
 OWN = '<robotNamespace>robo</robotNamespace>'
+OWN_IMU = ('<topicName>', f'{OWN}<topicName>')
+BASE_FRAME, LASER_FRAME = (f'<frameName>{one}_link</frameName>' for one in ('base', 'laser'))
+RATE = '<updateRate>100.0</updateRate>'
 # Where Gazebo was recorded image_transport's plugin of compressed pictures was not installed.
 COMPRESSED = 'sensor_msgs/CompressedImage'
 CAMERA = {'image_raw': IMAGE, 'image_raw/compressed': COMPRESSED, 'camera_info': INFO}
@@ -32,6 +36,10 @@ DEPTH = {
     'depth/points': CLOUD,
 }
 SETTINGS = {'set_camera_info', 'set_parameters'}
+TRUTH = dict.fromkeys(
+    ('/gt', *(f'/gt_{end}' for end in ('badframe', 'default', 'lumped', 'noise', 'off', 'wheel'))),
+    ODOMETRY,
+)
 
 
 def within(folder, names):
@@ -78,116 +86,81 @@ def spawn(world, wire, robot, namespace='/', old='', new='', name='bot'):
     return [wire.join(plugin) for plugin in model.plugins.values()]
 
 
+class Case(NamedTuple):
+    """A robot, and what it offers; `edit` replaces a text of its description."""
+
+    robot: str
+    topics: dict[str, str]
+    services: frozenset[str] = frozenset()
+    namespace: str = '/'
+    edit: tuple[str, str] = ('', '')
+
+
 @pytest.mark.parametrize(
-    ('robot', 'edit', 'namespace', 'topics', 'services'),
+    'case',
     [
-        ('laser_nonoise', None, '/', {'/scan': SCAN}, set()),
-        ('laser_nonoise', RELATIVE, '', {'/scan': SCAN}, set()),
-        ('laser_nonoise', RELATIVE, '/', {'/scan': SCAN}, set()),
-        ('laser_nonoise', RELATIVE, 'nsx', {'/nsx/scan': SCAN}, set()),
-        ('laser_nonoise', RELATIVE, '/nsy/', {'/nsy/scan': SCAN}, set()),
-        (
-            'laser_nonoise',
-            ('<topicName>/', f'{OWN}<topicName>'),
-            '/other',
-            {'/robo/scan': SCAN},
-            set(),
-        ),
-        ('laser_nonoise', ('<topicName>/scan</topicName>', ''), '/', {'/world': SCAN}, set()),
-        ('laser_block', None, '/', {'/cloud': 'sensor_msgs/PointCloud'}, set()),
-        ('range', None, '/', {'/sonar': RANGE}, set()),
-        ('range_noise_ir', None, '/', {'/robo/sonar': RANGE}, set()),
-        ('imu_sensor', None, '', {'/bot/imu/data': IMU}, set()),
-        ('imu_sensor', None, '/', {'/imu/data': IMU}, set()),
-        ('imu_sensor', None, '/nsx', {'/nsx/imu/data': IMU}, set()),
-        ('imu_sensor', ('<topicName>', f'{OWN}<topicName>'), '', {'/robo/imu/data': IMU}, set()),
-        (
+        Case('laser_nonoise', {'/scan': SCAN}),
+        Case('laser_nonoise', {'/scan': SCAN}, namespace='', edit=RELATIVE),
+        Case('laser_nonoise', {'/scan': SCAN}, edit=RELATIVE),
+        Case('laser_nonoise', {'/nsx/scan': SCAN}, namespace='nsx', edit=RELATIVE),
+        Case('laser_nonoise', {'/nsy/scan': SCAN}, namespace='/nsy/', edit=RELATIVE),
+        Case('laser_nonoise', {'/robo/scan': SCAN}, edit=('<topicName>/', f'{OWN}<topicName>')),
+        Case('laser_nonoise', {'/world': SCAN}, edit=('<topicName>/scan</topicName>', '')),
+        Case('laser_block', {'/cloud': 'sensor_msgs/PointCloud'}),
+        Case('range', {'/sonar': RANGE}),
+        Case('range_noise_ir', {'/robo/sonar': RANGE}),
+        Case('imu_sensor', {'/bot/imu/data': IMU}, namespace=''),
+        Case('imu_sensor', {'/imu/data': IMU}),
+        Case('imu_sensor', {'/nsx/imu/data': IMU}, namespace='/nsx'),
+        Case('imu_sensor', {'/robo/imu/data': IMU}, namespace='', edit=OWN_IMU),
+        Case('imu_sensor', {'/robo/imu/data': IMU}, namespace='/other', edit=OWN_IMU),
+        Case('imu_sensor', {'/imu': IMU}, namespace='', edit=('>imu/data<', '>/imu<')),
+        Case(
             'imu_sensor',
-            ('<topicName>', f'{OWN}<topicName>'),
-            '/other',
-            {'/robo/imu/data': IMU},
-            set(),
+            {'/bot/imu_data': IMU},
+            namespace='',
+            edit=('<topicName>imu/data</topicName>', ''),
         ),
-        ('imu_sensor', ('>imu/data<', '>/imu<'), '', {'/imu': IMU}, set()),
-        ('imu_sensor', ('<topicName>imu/data</topicName>', ''), '', {'/bot/imu_data': IMU}, set()),
-        ('imu_sensor', ('<frameName>imu_link</frameName>', ''), '', {}, set()),
-        ('imu_model', None, '', {'/imu': IMU}, {'/imu_service'}),
-        ('imu_model', None, '/nsx', {'/nsx/imu': IMU}, {'/nsx/imu_service'}),
-        (
+        Case('imu_sensor', {}, namespace='', edit=('<frameName>imu_link</frameName>', '')),
+        Case('imu_model', {'/imu': IMU}, {'/imu_service'}, ''),
+        Case('imu_model', {'/nsx/imu': IMU}, {'/nsx/imu_service'}, '/nsx'),
+        Case(
             'imu_model',
-            ('<topicName>imu</topicName><serviceName>imu_service</serviceName>', ''),
-            '/nsx',
             {'/default_imu': IMU},
             {'/default_imu'},
-        ),
-        ('bumper', None, '/', {'/bumper': BUMPER}, set()),
-        ('bumper', None, '/nsx', {'/nsx/bumper': BUMPER}, set()),
-        (
-            'bumper',
-            ('<bumperTopicName>', f'{OWN}<bumperTopicName>'),
-            '/',
-            {'/robo/bumper': BUMPER},
-            set(),
-        ),
-        ('bumper_defaults', None, '/', {'/bumper_states': BUMPER}, set()),
-        ('camera_320', None, '/', within('/camera1', CAMERA), within('/camera1', SETTINGS)),
-        (
-            'camera_320',
-            None,
             '/nsx',
-            within('/nsx/camera1', CAMERA),
-            within('/nsx/camera1', SETTINGS),
+            ('<topicName>imu</topicName><serviceName>imu_service</serviceName>', ''),
         ),
-        (
+        Case('bumper', {'/bumper': BUMPER}),
+        Case('bumper', {'/nsx/bumper': BUMPER}, namespace='/nsx'),
+        Case('bumper', {'/robo/bumper': BUMPER}, edit=('<bumperTopic', f'{OWN}<bumperTopic')),
+        Case('bumper_defaults', {'/bumper_states': BUMPER}),
+        Case('camera_320', within('/camera1', CAMERA), within('/camera1', SETTINGS)),
+        Case(
+            'camera_320', within('/nsx/camera1', CAMERA), within('/nsx/camera1', SETTINGS), '/nsx'
+        ),
+        Case(
             'multicamera',
-            None,
-            '/',
-            {**within('/multisense/left', CAMERA), **within('/multisense/right', CAMERA)},
+            within('/multisense/left', CAMERA) | within('/multisense/right', CAMERA),
             within('/multisense/left', SETTINGS) | within('/multisense/right', SETTINGS),
         ),
-        ('openni_kinect', None, '/', within('/camera', DEPTH), within('/camera', SETTINGS)),
-        (
-            'openni_kinect',
-            None,
-            '/nsx',
-            within('/nsx/camera', DEPTH),
-            within('/nsx/camera', SETTINGS),
+        Case('openni_kinect', within('/camera', DEPTH), within('/camera', SETTINGS)),
+        Case(
+            'openni_kinect', within('/nsx/camera', DEPTH), within('/nsx/camera', SETTINGS), '/nsx'
         ),
-        ('depth_camera', None, '/', within('/camera', DEPTH), within('/camera', SETTINGS)),
-        (
-            'arm_ft',
-            None,
-            '/',
-            {'/ft_elbow': WRENCH, '/ft_shoulder': WRENCH, '/joint_states': JOINTS},
-            set(),
-        ),
-        (
-            'skid4_p3d',
-            None,
-            '/',
-            {
-                **{
-                    f'/gt{end}': ODOMETRY
-                    for end in ('', '_badframe', '_default', '_lumped', '_noise', '_off', '_wheel')
-                },
-                '/joint_states': JOINTS,
-                '/odom': ODOMETRY,
-                '/tf': TF,
-            },
-            set(),
-        ),
-        ('planar', None, '/', {'/odom': ODOMETRY, '/tf': TF}, set()),
-        ('tricycle', None, '/', {'/joint_states': JOINTS, '/odom': ODOMETRY, '/tf': TF}, set()),
-        ('hog', None, '/', {'/tf': TF}, set()),
-        ('force', None, '/', {}, set()),
+        Case('depth_camera', within('/camera', DEPTH), within('/camera', SETTINGS)),
+        Case('arm_ft', {'/ft_elbow': WRENCH, '/ft_shoulder': WRENCH, '/joint_states': JOINTS}),
+        Case('skid4_p3d', {'/joint_states': JOINTS, '/odom': ODOMETRY, '/tf': TF, **TRUTH}),
+        Case('planar', {'/odom': ODOMETRY, '/tf': TF}),
+        Case('tricycle', {'/joint_states': JOINTS, '/odom': ODOMETRY, '/tf': TF}),
+        Case('hog', {'/tf': TF}),
+        Case('force', {}),
     ],
 )
-def test_names_and_types_agree_with_the_recording(
-    world, wire, robot, edit, namespace, topics, services
-):
-    spawn(world, wire, robot, namespace, *(edit or ()))
-    assert {name: topic.message_class._type for name, topic in wire.publishers.items()} == topics
-    assert wire.services == services
+def test_names_and_types_agree_with_the_recording(world, wire, case):
+    spawn(world, wire, case.robot, case.namespace, *case.edit)
+    types = {name: topic.message_class._type for name, topic in wire.publishers.items()}
+    assert (types, wire.services) == (case.topics, case.services)
 
 
 @pytest.mark.parametrize(
@@ -207,14 +180,8 @@ def test_commands_have_the_recorded_names(world, wire, robot, topics):
 
 
 def test_empty_namespace_of_a_tricycle_is_the_name_of_the_model(world, wire):
-    spawn(
-        world,
-        wire,
-        'tricycle',
-        '/',
-        'tricycle_drive.so">',
-        'tricycle_drive.so"><robotNamespace></robotNamespace>',
-    )
+    tag = 'tricycle_drive.so">'
+    spawn(world, wire, 'tricycle', '/', tag, f'{tag}<robotNamespace></robotNamespace>')
     assert set(wire.subscribers) == {'/bot/cmd_vel'}
 
 
@@ -239,7 +206,7 @@ def test_only_images_are_latched(world, wire, robot, latched):
     [
         ('laser_nonoise', '', 'pre/laser_link'),
         ('imu_sensor', '', 'imu_link'),
-        ('laser_nonoise', '<frameName>laser_link</frameName>', 'world'),
+        ('laser_nonoise', LASER_FRAME, 'world'),
         ('imu_model', '', 'base_footprint'),
         ('bumper', '', 'pre/base_link'),
         ('bumper_defaults', '', 'pre/world'),
@@ -285,26 +252,10 @@ def test_two_robots_of_the_same_names_share_topics_and_the_first_has_the_service
 @pytest.mark.parametrize(
     ('robot', 'removed', 'message'),
     [
-        (
-            'bumper',
-            '<frameName>base_link</frameName>',
-            'bumper plugin missing <frameName>, defaults to world',
-        ),
-        (
-            'range',
-            '<frameName>laser_link</frameName>',
-            'Range plugin missing <frameName>, defaults to /world',
-        ),
-        (
-            'laser_block',
-            '<frameName>laser_link</frameName>',
-            'Block laser plugin missing <frameName>, defaults to /world',
-        ),
-        (
-            'arm_ft',
-            '<updateRate>100.0</updateRate>',
-            'ft_sensor plugin missing <updateRate>, defaults to 0.0',
-        ),
+        ('bumper', BASE_FRAME, 'bumper plugin missing <frameName>, defaults to world'),
+        ('range', LASER_FRAME, 'Range plugin missing <frameName>, defaults to /world'),
+        ('laser_block', LASER_FRAME, 'Block laser plugin missing <frameName>, defaults to /world'),
+        ('arm_ft', RATE, 'ft_sensor plugin missing <updateRate>, defaults to 0.0'),
     ],
 )
 def test_defaults_are_logged_as_information_not_as_warnings(

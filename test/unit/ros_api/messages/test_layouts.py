@@ -13,7 +13,7 @@ from rospy.msg import serialize_message
 from sensor_msgs.msg import ChannelFloat32, Imu, JointState, LaserScan, PointCloud
 from tf2_msgs.msg import TFMessage
 
-from rosbots_description.ros_api.messages.conversions import fill_pose, fill_twist
+from rosbots_description.ros_api.messages.conversions import fill_pose, fill_transform, fill_twist
 from rosbots_description.ros_api.messages.layouts import (
     ImuLayout,
     JointStatesLayout,
@@ -46,9 +46,9 @@ def test_odometry(frame, child):
     message.header.frame_id, message.header.stamp = frame, STAMP
     fill_pose(message.pose.pose, POSE)
     fill_twist(message.twist.twist, TWIST)
-    message.pose.covariance = [0.0] * 36
-    variances = message.pose.covariance[::7] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-    layout = OdometryLayout(frame, child, variances)
+    pose_variances, twist_variances = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 0.5, 1.5, 2.5, 3.5, 4.5)
+    message.pose.covariance[::7], message.twist.covariance[::7] = pose_variances, twist_variances
+    layout = OdometryLayout(frame, child, pose_variances, twist_variances)
     assert layout.pack(SEQ, NOW_NS, Odometry(POSE, TWIST)) == on_the_wire(message)
 
 
@@ -56,9 +56,7 @@ def test_odometry(frame, child):
 def test_a_transform(parent, child):
     edge = TransformStamped(child_frame_id=child)
     edge.header.frame_id, edge.header.stamp = parent, STAMP
-    translation, rotation = edge.transform.translation, edge.transform.rotation
-    translation.x, translation.y, translation.z = POSE.position
-    rotation.x, rotation.y, rotation.z, rotation.w = POSE.orientation
+    fill_transform(edge.transform, POSE)
     assert TransformLayout(parent, child).pack(NOW_NS, POSE) == on_the_wire(TFMessage([edge]))
 
 
@@ -118,31 +116,18 @@ def test_an_imu():
     assert ImuLayout('imu_link').pack(SEQ, NOW_NS, reading) == on_the_wire(message)
 
 
-@pytest.mark.parametrize('names', [('right', 'left'), ('rädchen',), ()])
-def test_joint_states_have_positions_only(names):
-    positions = [0.5 + i for i in range(len(names))]
-    message = JointState(name=names, position=positions)
+@pytest.mark.parametrize(
+    'reading',
+    [
+        JointStates(('right', 'rädchen'), (0.5, 1.5)),
+        JointStates((), ()),
+        JointStates(('steering', 'left'), (0.5, 1.5), (0.1, 0.2), (0.0, 3.0)),
+    ],
+)
+def test_joint_states_have_velocities_and_efforts_if_given(reading):
+    message = JointState(None, *reading)
     message.header.stamp = STAMP
-    reading = JointStates(names, positions)
     assert JointStatesLayout(reading).pack(SEQ, NOW_NS, reading) == on_the_wire(message)
-
-
-def test_joint_states_have_velocities_and_efforts_if_given():
-    told = ('steering', 'left'), (0.5, 1.5), (0.1, 0.2), (0.0, 3.0)
-    message = JointState(None, *told)
-    message.header.stamp = STAMP
-    reading = JointStates(*told)
-    assert JointStatesLayout(reading).pack(SEQ, NOW_NS, reading) == on_the_wire(message)
-
-
-def test_odometry_has_the_covariance_of_its_twist():
-    message = OdometryMessage(child_frame_id='b')
-    message.header.frame_id, message.header.stamp = 'a', STAMP
-    message.twist.covariance[::7] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
-    fill_pose(message.pose.pose, POSE)
-    fill_twist(message.twist.twist, TWIST)
-    layout = OdometryLayout('a', 'b', (0.0,) * 6, (1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
-    assert layout.pack(SEQ, NOW_NS, Odometry(POSE, TWIST)) == on_the_wire(message)
 
 
 def test_sequence_numbers_continue_those_of_rospy_and_wrap_around():

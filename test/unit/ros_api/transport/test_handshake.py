@@ -18,6 +18,7 @@ from rosbots_description.ros_api.transport.handshake import (
 )
 
 TIMEOUT = 0.05  # [s]
+PARTIAL = struct.pack('<I', 7) + b'a='  # of a header
 
 
 @pytest.fixture
@@ -50,8 +51,12 @@ def test_available_header_is_accepted_without_a_pause(ends, monkeypatch):
     assert speaks_tcpros(ends[0], TIMEOUT)
 
 
-def test_silent_connection_times_out(ends):
+@pytest.mark.parametrize('sent', [b'', PARTIAL])
+def test_silent_connection_times_out(ends, sent):
+    ends[1].sendall(sent)
+    begin = time.monotonic()
     assert not speaks_tcpros(ends[0], TIMEOUT)
+    assert time.monotonic() - begin >= TIMEOUT
 
 
 def test_http_is_not_tcpros(ends):
@@ -59,20 +64,9 @@ def test_http_is_not_tcpros(ends):
     assert not speaks_tcpros(ends[0], TIMEOUT)
 
 
-def test_connection_closed_at_once_is_not_tcpros(ends):
-    ends[1].close()
-    assert not speaks_tcpros(ends[0], TIMEOUT)
-
-
-def test_missing_header_times_out(ends):
-    ends[1].sendall(struct.pack('<I', 7) + b'a=')
-    begin = time.monotonic()
-    assert not speaks_tcpros(ends[0], TIMEOUT)
-    assert time.monotonic() - begin >= TIMEOUT
-
-
-def test_partial_header_of_a_closed_connection_ends_the_wait(ends):
-    ends[1].sendall(struct.pack('<I', 7) + b'a=')
+@pytest.mark.parametrize('sent', [b'', PARTIAL])
+def test_closed_connection_ends_the_wait(ends, sent):
+    ends[1].sendall(sent)
     ends[1].close()
     begin = time.monotonic()
     assert not speaks_tcpros(ends[0], 1000.0)

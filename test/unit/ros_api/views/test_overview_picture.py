@@ -1,6 +1,8 @@
 """Viewpoint of the overview image: its parameters, which never delay an image."""
 
 import math
+from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 import rospy
@@ -10,14 +12,11 @@ from rosbots_description.ros_api.views.overview_picture import Viewpoint, line_o
 from rosbots_description.sim.rendering.camera import EYE, TARGET
 
 
-class FakeRegistrar:
-    """Records posted jobs."""
-
-    def __init__(self):
-        self.jobs = []
-
-    def post(self, job):
-        self.jobs.append(job)
+@pytest.fixture
+def registrar():
+    """Return a registrar that keeps its jobs, in `jobs`."""
+    jobs = []
+    return SimpleNamespace(post=jobs.append, jobs=jobs)
 
 
 @pytest.fixture
@@ -72,50 +71,29 @@ def test_invalid_parameters_keep_the_viewpoint(parameters, caplog):
     assert caplog.text.count("eye is 'here'") == 1
 
 
-def test_missing_master_keeps_the_viewpoint(monkeypatch):
-    def refused(*_):
-        raise ConnectionRefusedError
-
-    monkeypatch.setattr('rospy.get_param', refused)
-    viewpoint, registrar = Viewpoint(), FakeRegistrar()
+def test_without_a_master_the_viewpoint_stays_and_images_are_published(monkeypatch, registrar):
+    monkeypatch.setattr(rospy, 'get_param', Mock(side_effect=ConnectionRefusedError))
+    viewpoint = Viewpoint()
     viewpoint.read_soon(registrar)
-    registrar.jobs.pop()()
-    assert viewpoint.sight == (EYE, TARGET)
-    viewpoint.read_soon(registrar)
-    assert len(registrar.jobs) == 1
-
-
-def test_registrar_reads_the_parameters_one_request_at_a_time(parameters):
-    parameters['~view/target'] = [0, 0, 9]
-    viewpoint, registrar = Viewpoint(), FakeRegistrar()
-    viewpoint.read_soon(registrar)
-    viewpoint.read_soon(registrar)
-    assert viewpoint.sight == (EYE, TARGET)
-    assert len(registrar.jobs) == 1
-    registrar.jobs.pop()()
-    assert viewpoint.sight == (EYE, (0.0, 0.0, 9.0))
-    viewpoint.read_soon(registrar)
-    assert len(registrar.jobs) == 1
-
-
-def test_parameters_set_in_advance_apply_to_the_first_image(parameters):
-    viewpoint, registrar = Viewpoint(), FakeRegistrar()
-    viewpoint.read()
-    viewpoint.rest()
-    parameters['~view/eye'] = [3, 0, 1]
-    viewpoint.read_soon(registrar)
-    assert not viewpoint.ready
     registrar.jobs.pop()()
     assert viewpoint.ready
-    assert viewpoint.sight == ((3.0, 0.0, 1.0), TARGET)
+    assert viewpoint.sight == (EYE, TARGET)
+    viewpoint.read_soon(registrar)
+    assert len(registrar.jobs) == 1
 
 
-def test_images_are_published_without_a_master(monkeypatch):
-    def gone(*_arguments):
-        raise ConnectionRefusedError
-
-    monkeypatch.setattr(rospy, 'get_param', gone)
+def test_parameters_are_read_once_by_the_registrar_before_the_first_image(parameters, registrar):
     viewpoint = Viewpoint()
     viewpoint.read()
-    assert viewpoint.ready
+    viewpoint.rest()
+    parameters |= {'~view/eye': [3, 0, 1], '~view/target': [0, 0, 9]}
+    viewpoint.read_soon(registrar)
+    viewpoint.read_soon(registrar)
+    assert not viewpoint.ready
     assert viewpoint.sight == (EYE, TARGET)
+    (job,) = registrar.jobs
+    job()
+    assert viewpoint.ready
+    assert viewpoint.sight == ((3.0, 0.0, 1.0), (0.0, 0.0, 9.0))
+    viewpoint.read_soon(registrar)
+    assert len(registrar.jobs) == 2
