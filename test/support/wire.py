@@ -3,11 +3,24 @@
 import struct
 from types import SimpleNamespace
 
+from geometry_msgs.msg import TransformStamped
+from tf2_msgs.msg import TFMessage
+
 from rosbots_description.ros_api.adapters import adapter as adapter_module
 from rosbots_description.ros_api.adapters import drives
 from rosbots_description.ros_api.adapters.adapter import Adapter
 from rosbots_description.ros_api.adapters.registry import topics_of
+from rosbots_description.ros_api.messages import fill_transform
 from rosbots_description.ros_api.server.static_frames import StaticFrames
+
+
+def transforms(*edges):
+    """Return a message of TF with edges: parent, child, and the child's pose in it."""
+    message = TFMessage([TransformStamped(child_frame_id=child) for _, child, _ in edges])
+    for made, (parent, _, pose) in zip(message.transforms, edges, strict=True):
+        made.header.frame_id = parent
+        fill_transform(made.transform, pose)
+    return message
 
 
 class Wire:

@@ -3,12 +3,9 @@
 from contextlib import closing
 
 import pytest
-from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
-from std_msgs.msg import Header
 from support import urdf_spec
 from support.scenes import box
-from support.wire import Wire
-from tf2_msgs.msg import TFMessage
+from support.wire import Wire, transforms
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.runtime.world import World
@@ -27,17 +24,6 @@ def world():
         yield made
 
 
-def transform(parent, child):
-    edge = TransformStamped(
-        Header(frame_id=parent),
-        child,
-        Transform(Vector3(1.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0)),
-    )
-    bad = TransformStamped(Header(frame_id=parent), child, Transform(Vector3(NAN, 0, 0), None))
-    bad.transform.rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
-    return TFMessage([edge, bad])
-
-
 def test_hand_of_god_follows_a_frame_and_publishes_its_pose(world, monkeypatch):
     wire = Wire(monkeypatch)
     spec = urdf_spec(box('base', (1.0, 1.0, 1.0), 1.0) + PLUGIN)
@@ -45,9 +31,10 @@ def test_hand_of_god_follows_a_frame_and_publishes_its_pose(world, monkeypatch):
     adapter = wire.join(plugin)
     take, topic = wire.subscribers['/tf'], wire.publishers['/tf']
     world.run(3)
-    take(transform('world', 'other'))
+    take(transforms(('world', 'other', STEP)))
     assert plugin.target is None
-    take(transform('/world', '/hog_desired'))
+    invalid = Pose((NAN, 0.0, 0.0))
+    take(transforms(*(('/world', '/hog_desired', pose) for pose in (STEP, invalid))))
     assert plugin.target == STEP
     topic.read('/unnamed')  # this node, by its subscription
     world.run(2)

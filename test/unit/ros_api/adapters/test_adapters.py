@@ -4,14 +4,13 @@ from types import SimpleNamespace
 
 import pytest
 import rospy
-from geometry_msgs.msg import TransformStamped, Twist
+from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float64
 from support.fake_drive import fake_model, make, make_drive, run
-from support.wire import Wire
-from tf2_msgs.msg import TFMessage
+from support.wire import Wire, transforms
 
 from rosbots_description.ros_api.adapters import adapter as adapter_module
 from rosbots_description.ros_api.adapters import registry
@@ -19,6 +18,7 @@ from rosbots_description.ros_api.adapters.adapter import Adapter
 from rosbots_description.ros_api.adapters.declarations import Offers, Publishes
 from rosbots_description.ros_api.adapters.registry import Adapters, topics_of
 from rosbots_description.ros_api.server.static_frames import StaticFrames
+from rosbots_description.sim.core import IDENTITY
 from rosbots_description.sim.plugins.base import PeriodicPlugin
 from rosbots_description.sim.plugins.drive.diff_drive import DiffDrive
 
@@ -181,10 +181,8 @@ def test_published_transforms_move_external_static_frames(monkeypatch):
     monkeypatch.setattr(adapter_module, 'find_tf_prefix', lambda _: 'must not be looked up again')
     wire.publishers['/tf'].read()
     run(plugin, 11)
-    held = TransformStamped(child_frame_id='base_footprint')
-    held.header.frame_id = 'root'
-    held.transform.rotation.w = 1.0
-    adapter.server.static_frames.add('/rsp', TFMessage([held]))
+    held = transforms(('root', 'base_footprint', IDENTITY))
+    adapter.server.static_frames.add('/rsp', held)
     run(plugin, 10)
     edges = [edge for message in wire.publishers['/tf'].sent for edge in message.transforms]
     assert [(edge.header.frame_id, edge.child_frame_id) for edge in edges] == [

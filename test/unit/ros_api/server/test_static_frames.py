@@ -4,12 +4,9 @@ import math
 from types import SimpleNamespace
 
 import pytest
-from geometry_msgs.msg import TransformStamped
 from support.fake_drive import make, run
-from support.wire import Wire
-from tf2_msgs.msg import TFMessage
+from support.wire import Wire, transforms
 
-from rosbots_description.ros_api.messages.conversions import fill_transform
 from rosbots_description.ros_api.server.static_frames import StaticFrames, from_root
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.runtime.outputs import FrameTransform
@@ -18,29 +15,21 @@ HELD = Pose((0.0, 0.1, 0.05), from_rpy(0.0, 0.0, 0.3))
 MOVED = Pose((1.0, 2.0, 0.0), from_rpy(0.1, 0.0, 1.2))
 
 
-def message(*edges):
-    transforms = []
-    for parent, child, pose in edges:
-        made = TransformStamped(child_frame_id=child)
-        made.header.frame_id = parent
-        fill_transform(made.transform, pose)
-        transforms.append(made)
-    return TFMessage(transforms)
-
-
 @pytest.fixture
 def frames():
     return StaticFrames()
 
 
 def test_edge_stays_without_external_transforms_of_its_child(frames):
-    frames.add('/rsp', message(('base_link', 'laser', HELD)))
+    frames.add('/rsp', transforms(('base_link', 'laser', HELD)))
     edge = FrameTransform('odom', 'base_link', MOVED)
     assert from_root(edge, frames.parents) is edge
 
 
 def test_external_static_tree_is_moved_by_its_root(frames):
-    frames.add('/rsp', message(('base_footprint', 'base_link', HELD), ('base_link', 'laser', HELD)))
+    frames.add(
+        '/rsp', transforms(('base_footprint', 'base_link', HELD), ('base_link', 'laser', HELD))
+    )
     for child, chain in (('base_link', HELD), ('laser', compose(HELD, HELD))):
         edge = from_root(FrameTransform('odom', child, MOVED), frames.parents)
         assert (edge.parent, edge.child) == ('odom', 'base_footprint')
@@ -60,21 +49,21 @@ def test_external_static_tree_is_moved_by_its_root(frames):
     ],
 )
 def test_edge_stays_if_external_transforms_contain_it_or_form_a_loop(frames, edges):
-    frames.add('/other', message(*edges))
+    frames.add('/other', transforms(*edges))
     edge = FrameTransform('odom', 'base_link', MOVED)
     assert from_root(edge, frames.parents) is edge
 
 
 def test_transforms_of_an_ended_node_are_forgotten(frames):
-    frames.add('/rsp', message(('base_footprint', 'base_link', HELD)))
-    frames.add('/camera', message(('base_link', 'camera', HELD)))
+    frames.add('/rsp', transforms(('base_footprint', 'base_link', HELD)))
+    frames.add('/camera', transforms(('base_link', 'camera', HELD)))
     frames.retain({'/camera'})
     assert frames.nodes == {'/camera'}
     assert set(frames.parents) == {'camera'}
 
 
 def test_transform_that_is_not_finite_is_left_out(frames):
-    frames.add('/rsp', message(('a', 'b', Pose((math.nan, 0.0, 0.0)))))
+    frames.add('/rsp', transforms(('a', 'b', Pose((math.nan, 0.0, 0.0)))))
     assert not frames.parents
 
 
@@ -97,7 +86,7 @@ def test_wheel_transforms_are_left_to_a_state_publisher(monkeypatch, readers, ho
     wheels = wire.publishers['/tf'].sent
     assert wheels
     wheels.clear()
-    frames.add(holder, message(('base_footprint', 'base_link', HELD)))
+    frames.add(holder, transforms(('base_footprint', 'base_link', HELD)))
     assert plugin.wheel_transform.wanted is wanted
     run(plugin, 20)
     assert bool(wheels) is wanted
@@ -108,7 +97,7 @@ def test_new_state_publisher_counts_before_its_notification(monkeypatch):
     plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
     frames = wire.join(plugin).server.static_frames
     wire.publishers['/tf'].read()
-    frames.add('/rsp', message(('base_footprint', 'base_link', HELD)))
+    frames.add('/rsp', transforms(('base_footprint', 'base_link', HELD)))
     states = wire.publishers['/joint_states']
     states.impl.subscriber_listeners.clear()
     states.read('/rsp')
@@ -117,7 +106,7 @@ def test_new_state_publisher_counts_before_its_notification(monkeypatch):
 
 
 @pytest.mark.parametrize('watching', [True, False])
-def test_connected_node_counts_before_its_first_message(frames, watching, monkeypatch):
+def test_connected_node_counts_before_its_first_transforms(frames, watching, monkeypatch):
     monkeypatch.setattr('rospy.Subscriber', lambda *_: SimpleNamespace(impl=None))
     if watching:
         frames.watch(SimpleNamespace(every=lambda *_: None, post=None))

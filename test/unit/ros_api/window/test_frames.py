@@ -7,11 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 import rospy
-from geometry_msgs.msg import TransformStamped
+from support.wire import transforms
 from tf2_msgs.msg import TFMessage
 
 from rosbots_description.ros_api.window.frames import TOPICS, FrameFinder
-from rosbots_description.sim.core import IDENTITY
+from rosbots_description.sim.core import IDENTITY, Pose
 
 VISITS = 500
 
@@ -57,11 +57,8 @@ class Topics:
         return SimpleNamespace(unregister=lambda: self.readers.pop(topic))
 
     def say(self, parent, child, x=0.0, static=True, w=1.0):
-        message = TransformStamped(child_frame_id=child)
-        message.header.frame_id = parent
-        message.transform.translation.x = x
-        message.transform.rotation.w = w
-        self.readers[TOPICS[static]](TFMessage([message]))
+        pose = Pose((x, 0.0, 0.0), (0.0, 0.0, 0.0, w))
+        self.readers[TOPICS[static]](transforms((parent, child, pose)))
 
 
 @pytest.fixture
@@ -157,7 +154,7 @@ def test_another_robot_is_looked_for_anew(finder, topics):
     assert finder.locate('laser', {'base'})
     finder.forget()
     assert finder.locate('laser', {'base'}) is None
-    late(TFMessage([TransformStamped(child_frame_id='laser')]))  # it was under way
+    late(transforms(('base', 'laser', IDENTITY)))  # it was under way
     assert finder._parents == {}
 
 
