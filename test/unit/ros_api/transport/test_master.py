@@ -9,6 +9,7 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 import pytest
 import rosgraph
 import rospy
+from support.serving import serving
 
 from rosbots_description.ros_api.clients import spawn_model
 from rosbots_description.ros_api.transport import master, registrations
@@ -51,13 +52,10 @@ class FakeMaster(SimpleXMLRPCServer):
 
 @pytest.fixture
 def there(monkeypatch):
-    with FakeMaster() as server:
-        thread = threading.Thread(target=server.serve_forever, args=(0.01,))
-        thread.start()
-        monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{server.server_address[1]}')
+    server = FakeMaster()
+    with serving(server) as address:
+        monkeypatch.setenv('ROS_MASTER_URI', address)
         yield server
-        server.shutdown()
-        thread.join()
 
 
 @pytest.fixture(autouse=True)
@@ -136,15 +134,11 @@ class Banner(BaseRequestHandler):
 @pytest.mark.parametrize('handler', [Stranger, Banner, SimpleXMLRPCRequestHandler])
 def test_what_is_not_a_master_is_an_error_of_each_program(monkeypatch, capsys, handler):
     kind = SimpleXMLRPCServer if handler is SimpleXMLRPCRequestHandler else TCPServer
-    with kind(('localhost', 0), handler) as server:
-        threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True).start()
-        monkeypatch.setenv('ROS_MASTER_URI', f'http://localhost:{server.server_address[1]}')
-        try:
-            with pytest.raises(AddressError, match='is not a ROS master'):
-                is_master_running('/me')
-            assert spawn_model.run(None, []) == 1
-        finally:
-            server.shutdown()
+    with serving(kind(('localhost', 0), handler)) as address:
+        monkeypatch.setenv('ROS_MASTER_URI', address)
+        with pytest.raises(AddressError, match='is not a ROS master'):
+            is_master_running('/me')
+        assert spawn_model.run(None, []) == 1
     (line,) = [line for line in capsys.readouterr().err.splitlines() if 'spawn_model' in line]
     assert 'is not a ROS master; roscore starts one' in line
 

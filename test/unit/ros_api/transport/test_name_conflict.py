@@ -3,13 +3,12 @@
 import http.server
 import os
 import socket
-import threading
-from contextlib import contextmanager
 from unittest import mock
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 import rospy
+from support.serving import serving
 
 from rosbots_description.ros_api.node import node
 from rosbots_description.ros_api.transport import name_conflict, registrations
@@ -23,19 +22,6 @@ from rosbots_description.ros_api.transport.name_conflict import (
 )
 
 NAME = '/gazebo'
-
-
-@contextmanager
-def serving(server):
-    """Serve on a new thread; yield the server's URI."""
-    thread = threading.Thread(target=server.serve_forever, args=(0.01,))
-    thread.start()
-    try:
-        yield f'http://localhost:{server.server_address[1]}/'
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
 
 
 @pytest.fixture
