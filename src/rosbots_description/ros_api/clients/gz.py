@@ -9,17 +9,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 
 import rospy
+from gazebo_msgs import srv
 from gazebo_msgs.msg import ModelState
-from gazebo_msgs.srv import (
-    DeleteModel,
-    GetModelProperties,
-    GetModelState,
-    GetPhysicsProperties,
-    GetWorldProperties,
-    SetModelState,
-    SetPhysicsProperties,
-    SpawnModel,
-)
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from rosbots_msgs.srv import Step
 from std_srvs.srv import Empty
@@ -71,14 +62,14 @@ def model(call: Call, flags: argparse.Namespace) -> Lines:
     """List, show, spawn, move or delete models."""
     name = flags.model_name
     if flags.list:
-        yield from call('get_world_properties', GetWorldProperties).model_names
+        yield from call('get_world_properties', srv.GetWorldProperties).model_names
     elif flags.delete:
-        call('delete_model', DeleteModel, model_name=name)
+        call('delete_model', srv.DeleteModel, model_name=name)
     elif flags.spawn_file or flags.spawn_string:
         text = read_file(flags.spawn_file) if flags.spawn_file else _standard_input()
         call(
             'spawn_sdf_model',
-            SpawnModel,
+            srv.SpawnModel,
             model_name=name,
             model_xml=canonical_xml(text),
             initial_pose=_pose(flags),
@@ -86,12 +77,12 @@ def model(call: Call, flags: argparse.Namespace) -> Lines:
     elif flags.info:
         yield from _info(call, name)
     elif flags.pose:
-        yield _six_numbers(call('get_model_state', GetModelState, model_name=name).pose)
+        yield _six_numbers(call('get_model_state', srv.GetModelState, model_name=name).pose)
     else:  # its velocity stays, as in Gazebo
-        twist = call('get_model_state', GetModelState, model_name=name).twist
+        twist = call('get_model_state', srv.GetModelState, model_name=name).twist
         call(
             'set_model_state',
-            SetModelState,
+            srv.SetModelState,
             model_state=ModelState(model_name=name, pose=_pose(flags), twist=twist),
         )
 
@@ -117,8 +108,8 @@ def _six_numbers(pose: Pose) -> str:
 
 def _info(call: Call, name: str) -> Lines:
     """Yield what is known of a model, in the form in which Gazebo prints its messages."""
-    known = call('get_model_properties', GetModelProperties, model_name=name)
-    state = call('get_model_state', GetModelState, model_name=name)
+    known = call('get_model_properties', srv.GetModelProperties, model_name=name)
+    state = call('get_model_state', srv.GetModelState, model_name=name)
     yield f'name: "{name}"'
     yield f'is_static: {str(known.is_static).lower()}'
     yield 'pose {'
@@ -135,12 +126,12 @@ def _info(call: Call, name: str) -> Lines:
 
 def physics(call: Call, flags: argparse.Namespace) -> Lines:
     """Change the physics settings that were given; the others stay."""
-    now = call('get_physics_properties', GetPhysicsProperties)
+    now = call('get_physics_properties', srv.GetPhysicsProperties)
     if flags.iters is not None:
         now.ode_config.sor_pgs_iters = flags.iters
     call(
         'set_physics_properties',
-        SetPhysicsProperties,
+        srv.SetPhysicsProperties,
         time_step=_given(flags.step_size, now.time_step),
         max_update_rate=_given(flags.update_rate, now.max_update_rate),
         gravity=Vector3(*flags.gravity) if flags.gravity else now.gravity,
@@ -173,12 +164,12 @@ def stats(
     samples: deque[tuple[float, float]] = deque(maxlen=SAMPLES)
     begin = clock()
     while True:
-        simulated = call('get_world_properties', GetWorldProperties).sim_time
+        simulated = call('get_world_properties', srv.GetWorldProperties).sim_time
         real = clock() - begin
         if flags.duration is not None and real > flags.duration:
             return
         samples.append((simulated, real))
-        paused = 'T' if call('get_physics_properties', GetPhysicsProperties).pause else 'F'
+        paused = 'T' if call('get_physics_properties', srv.GetPhysicsProperties).pause else 'F'
         if len(samples) > 1:
             factor = real_time_factor(samples)
             if flags.plot:

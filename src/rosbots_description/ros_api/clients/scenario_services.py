@@ -5,13 +5,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import rospy
-from gazebo_msgs.srv import (
-    DeleteModel,
-    GetJointProperties,
-    GetLinkState,
-    GetModelState,
-    SpawnModel,
-)
+from gazebo_msgs import srv
 from genpy import Message
 from geometry_msgs.msg import Pose as PoseMessage
 from std_srvs.srv import Empty
@@ -30,27 +24,27 @@ def spawn(model: ModelEntry, described: str) -> None:
     text = text.decode('utf-8', 'replace') if isinstance(text, bytes) else text
     pose = PoseMessage()
     fill_pose(pose, model.pose.pose())
-    call = _service(f'spawn_{"urdf" if tag == "robot" else "sdf"}_model', SpawnModel)
+    call = _service(f'spawn_{"urdf" if tag == "robot" else "sdf"}_model', srv.SpawnModel)
     _require(call(model.name, text, '', pose, ''))
 
 
 def delete(name: str) -> None:
     """Delete a model."""
-    _service('delete_model', DeleteModel)(name)
+    _service('delete_model', srv.DeleteModel)(name)
 
 
 def true_state(record: RecordEntry) -> Odometry | JointReading:
     """Return what is true of a record's model, link or joint."""
     if record.joint:
-        answer = _service('get_joint_properties', GetJointProperties)(record.joint)
+        answer = _service('get_joint_properties', srv.GetJointProperties)(record.joint)
         _require(answer)
         return JointReading(answer.position[0], answer.rate[0])
     if record.link:
-        answer = _service('get_link_state', GetLinkState)(f'{record.model}::{record.link}', '')
+        answer = _service('get_link_state', srv.GetLinkState)(f'{record.model}::{record.link}', '')
         _require(answer)
         answer = answer.link_state
     else:
-        answer = _service('get_model_state', GetModelState)(record.model, '')
+        answer = _service('get_model_state', srv.GetModelState)(record.model, '')
         _require(answer)
     return Odometry(read_pose(answer.pose), read_twist(answer.twist))
 

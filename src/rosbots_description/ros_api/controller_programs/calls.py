@@ -14,33 +14,25 @@ from collections.abc import Sequence
 from typing import Any
 
 import rospy
-from controller_manager_msgs.srv import (
-    ListControllers,
-    ListControllerTypes,
-    LoadController,
-    ReloadControllerLibraries,
-    SwitchController,
-    SwitchControllerRequest,
-    UnloadController,
-)
+from controller_manager_msgs import srv
 from genpy import Message
 
 from ..clients.gazebo_interface import interruptibly
 
 RUNNING = 'running'
-STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT
+STRICT, BEST_EFFORT = srv.SwitchControllerRequest.STRICT, srv.SwitchControllerRequest.BEST_EFFORT
 MANAGER = 'controller_manager'
 
 
 def list_controller_types() -> None:
     """Print the types of controllers that can be loaded."""
-    for name in call('list_controller_types', ListControllerTypes).types:
+    for name in call('list_controller_types', srv.ListControllerTypes).types:
         _print(name)
 
 
 def list_controllers() -> None:
     """Print the loaded controllers with their hardware interfaces and states."""
-    controllers = call('list_controllers', ListControllers).controller
+    controllers = call('list_controllers', srv.ListControllers).controller
     if not controllers:
         _print('No controllers are loaded in mechanism control')
     for one in controllers:
@@ -50,14 +42,14 @@ def list_controllers() -> None:
 
 def load_controller(name: str) -> bool:
     """Load a controller; tell whether it worked."""
-    loaded = bool(call('load_controller', LoadController, name=name).ok)
+    loaded = bool(call('load_controller', srv.LoadController, name=name).ok)
     _print(f"Loaded '{name}'" if loaded else f"Error when loading '{name}'")
     return loaded
 
 
 def unload_controller(name: str) -> bool:
     """Unload a controller; tell whether it worked."""
-    unloaded = bool(call('unload_controller', UnloadController, name=name).ok)
+    unloaded = bool(call('unload_controller', srv.UnloadController, name=name).ok)
     _print(f"Unloaded '{name}' successfully" if unloaded else f"Error when unloading '{name}'")
     return unloaded
 
@@ -105,8 +97,10 @@ def reload_libraries(force_kill: bool, restore: bool = False) -> bool:
         restore: load and start again what was loaded and running.
     """
     _print(f'Restore: {restore}')
-    before = call('list_controllers', ListControllers).controller if restore else []
-    answer = call('reload_controller_libraries', ReloadControllerLibraries, force_kill=force_kill)
+    before = call('list_controllers', srv.ListControllers).controller if restore else []
+    answer = call(
+        'reload_controller_libraries', srv.ReloadControllerLibraries, force_kill=force_kill
+    )
     _print(
         'Successfully reloaded libraries'
         if answer.ok
@@ -114,7 +108,7 @@ def reload_libraries(force_kill: bool, restore: bool = False) -> bool:
     )
     if restore:
         for one in before:
-            call('load_controller', LoadController, name=one.name)
+            call('load_controller', srv.LoadController, name=one.name)
         switch([one.name for one in before if one.state == RUNNING], [], BEST_EFFORT)
         _print('Controllers restored to original state')
     return bool(answer.ok)
@@ -125,7 +119,7 @@ def switch(starting: Sequence[str], stopping: Sequence[str], strictness: int) ->
     return bool(
         call(
             'switch_controller',
-            SwitchController,
+            srv.SwitchController,
             start_controllers=list(starting),
             stop_controllers=list(stopping),
             strictness=strictness,

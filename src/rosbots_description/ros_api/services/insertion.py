@@ -3,17 +3,7 @@
 from dataclasses import dataclass, replace
 
 from gazebo_msgs.srv import SetModelConfigurationRequest, SpawnModelRequest, SpawnModelResponse
-from rosbots_msgs.srv import (
-    GetModelDescription,
-    GetModelDescriptionRequest,
-    GetModelDescriptionResponse,
-    GetModelLibrary,
-    GetModelLibraryRequest,
-    GetModelLibraryResponse,
-    InsertModel,
-    InsertModelRequest,
-    InsertModelResponse,
-)
+from rosbots_msgs import srv
 
 from ...sim.core.arrays import FloatArray
 from ...sim.description import LightSpec
@@ -33,10 +23,10 @@ class _Insertion:
 
     prepared: PreparedModel | LightSpec
     box: FloatArray | None  # around the model
-    request: InsertModelRequest
+    request: srv.InsertModelRequest
 
 
-def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertModelResponse:
+def _read(server: Server, request: srv.InsertModelRequest) -> _Insertion | srv.InsertModelResponse:
     """Parse, compile and test; called beside the loop."""
     require_finite(request)
     if len(request.joint_names) != len(request.joint_positions):
@@ -59,8 +49,8 @@ def _read(server: Server, request: InsertModelRequest) -> _Insertion | InsertMod
     return _Insertion(prepared, box, request)
 
 
-@service('insert_model', InsertModel, prepare=_read, registers=True, table=EXTENSIONS)
-def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
+@service('insert_model', srv.InsertModel, prepare=_read, registers=True, table=EXTENSIONS)
+def insert_model(server: Server, insertion: _Insertion) -> srv.InsertModelResponse:
     """Spawn a model or light that was prepared."""
     prepared, box, request = insertion.prepared, insertion.box, insertion.request
     # Its name was free before it was prepared, perhaps at the same time as another of that name.
@@ -83,12 +73,12 @@ def insert_model(server: Server, insertion: _Insertion) -> InsertModelResponse:
     return _response(response, prepared.name)
 
 
-@service('get_model_description', GetModelDescription, table=EXTENSIONS)
+@service('get_model_description', srv.GetModelDescription, table=EXTENSIONS)
 def get_model_description(
-    server: Server, request: GetModelDescriptionRequest
-) -> GetModelDescriptionResponse:
+    server: Server, request: srv.GetModelDescriptionRequest
+) -> srv.GetModelDescriptionResponse:
     """Return a model as SDF, with the joint positions and the pose that it has now."""
-    response = GetModelDescriptionResponse()
+    response = srv.GetModelDescriptionResponse()
     model = server.world.models.get(request.model_name)
     if model is None:
         return refuse(response, 'GetModelDescription: model does not exist')
@@ -100,11 +90,13 @@ def get_model_description(
     return response
 
 
-@service('get_model_library', GetModelLibrary, on_loop=False, table=EXTENSIONS)
-def get_model_library(server: Server, _request: GetModelLibraryRequest) -> GetModelLibraryResponse:
+@service('get_model_library', srv.GetModelLibrary, on_loop=False, table=EXTENSIONS)
+def get_model_library(
+    server: Server, _request: srv.GetModelLibraryRequest
+) -> srv.GetModelLibraryResponse:
     """Return the names of the models along the model path."""
-    return GetModelLibraryResponse(model_names(server.find_model))
+    return srv.GetModelLibraryResponse(model_names(server.find_model))
 
 
-def _response(response: SpawnModelResponse, name: str = '') -> InsertModelResponse:
-    return InsertModelResponse(response.success, response.status_message, name)
+def _response(response: SpawnModelResponse, name: str = '') -> srv.InsertModelResponse:
+    return srv.InsertModelResponse(response.success, response.status_message, name)

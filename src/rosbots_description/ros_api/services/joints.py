@@ -4,21 +4,8 @@ import contextlib
 from dataclasses import replace
 from typing import Any
 
+from gazebo_msgs import srv
 from gazebo_msgs.msg import ODEJointProperties
-from gazebo_msgs.srv import (
-    ApplyJointEffort,
-    ApplyJointEffortRequest,
-    ApplyJointEffortResponse,
-    GetJointProperties,
-    GetJointPropertiesRequest,
-    GetJointPropertiesResponse,
-    JointRequest,
-    JointRequestRequest,
-    JointRequestResponse,
-    SetJointProperties,
-    SetJointPropertiesRequest,
-    SetJointPropertiesResponse,
-)
 
 from ...sim.description import JointSpec
 from ...sim.runtime import Joint, World
@@ -29,12 +16,12 @@ from .registry import refuse, service
 _UNLIMITED = 1e16  # a limit of at least this magnitude means none, as in SDF [rad or m]
 
 
-@service('get_joint_properties', GetJointProperties)
+@service('get_joint_properties', srv.GetJointProperties)
 def get_joint_properties(
-    server: Server, request: GetJointPropertiesRequest
-) -> GetJointPropertiesResponse:
+    server: Server, request: srv.GetJointPropertiesRequest
+) -> srv.GetJointPropertiesResponse:
     """Return position [rad or m] and rate; type and damping stay empty, as in Gazebo."""
-    response = GetJointPropertiesResponse()
+    response = srv.GetJointPropertiesResponse()
     joint = server.world.find_joint(request.joint_name)
     if joint is None and not _is_fixed(server.world, request.joint_name):
         return refuse(response, 'GetJointProperties: joint not found')
@@ -44,10 +31,10 @@ def get_joint_properties(
     return response
 
 
-@service('set_joint_properties', SetJointProperties)
+@service('set_joint_properties', srv.SetJointProperties)
 def set_joint_properties(
-    server: Server, request: SetJointPropertiesRequest
-) -> SetJointPropertiesResponse:
+    server: Server, request: srv.SetJointPropertiesRequest
+) -> srv.SetJointPropertiesResponse:
     """Change limits, damping and motor of a joint; an empty array changes nothing.
 
     The other fields are parameters of ODE's solver and have no counterpart here.
@@ -57,14 +44,14 @@ def set_joint_properties(
     if joint is not None:
         _change(joint, request.ode_joint_config)
     elif not _is_fixed(server.world, request.joint_name):
-        return refuse(SetJointPropertiesResponse(), 'SetJointProperties: joint not found')
-    return SetJointPropertiesResponse(True, 'SetJointProperties: properties set')
+        return refuse(srv.SetJointPropertiesResponse(), 'SetJointProperties: joint not found')
+    return srv.SetJointPropertiesResponse(True, 'SetJointProperties: properties set')
 
 
-@service('apply_joint_effort', ApplyJointEffort)
+@service('apply_joint_effort', srv.ApplyJointEffort)
 def apply_joint_effort(
-    server: Server, request: ApplyJointEffortRequest
-) -> ApplyJointEffortResponse:
+    server: Server, request: srv.ApplyJointEffortRequest
+) -> srv.ApplyJointEffortResponse:
     """Apply an effort [N m or N] from `start_time`, for `duration`; negative: without end."""
     require_finite(request)
     joint = server.world.find_joint(request.joint_name)
@@ -74,17 +61,19 @@ def apply_joint_effort(
             joint, lambda: joint.apply_effort(request.effort), start, duration
         )
     elif not _is_fixed(server.world, request.joint_name):
-        return refuse(ApplyJointEffortResponse(), 'ApplyJointEffort: joint not found')
-    return ApplyJointEffortResponse(True, 'ApplyJointEffort: effort set')
+        return refuse(srv.ApplyJointEffortResponse(), 'ApplyJointEffort: joint not found')
+    return srv.ApplyJointEffortResponse(True, 'ApplyJointEffort: effort set')
 
 
-@service('clear_joint_forces', JointRequest)
-def clear_joint_forces(server: Server, request: JointRequestRequest) -> JointRequestResponse:
+@service('clear_joint_forces', srv.JointRequest)
+def clear_joint_forces(
+    server: Server, request: srv.JointRequestRequest
+) -> srv.JointRequestResponse:
     """Remove all efforts on joints of that unscoped name, in all models."""
     server.world.external_forces.cancel(
         lambda target: isinstance(target, Joint) and target.name == request.joint_name
     )
-    return JointRequestResponse()
+    return srv.JointRequestResponse()
 
 
 def _is_fixed(world: World, name: str) -> bool:

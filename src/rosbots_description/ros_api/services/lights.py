@@ -2,17 +2,7 @@
 
 from dataclasses import replace
 
-from gazebo_msgs.srv import (
-    DeleteLight,
-    DeleteLightRequest,
-    DeleteLightResponse,
-    GetLightProperties,
-    GetLightPropertiesRequest,
-    GetLightPropertiesResponse,
-    SetLightProperties,
-    SetLightPropertiesRequest,
-    SetLightPropertiesResponse,
-)
+from gazebo_msgs import srv
 from std_msgs.msg import ColorRGBA
 
 from ...sim.description import Colour
@@ -23,12 +13,12 @@ from .registry import refuse, service
 _ATTENUATION = ('attenuation_constant', 'attenuation_linear', 'attenuation_quadratic')
 
 
-@service('get_light_properties', GetLightProperties)
+@service('get_light_properties', srv.GetLightProperties)
 def get_light_properties(
-    server: Server, request: GetLightPropertiesRequest
-) -> GetLightPropertiesResponse:
+    server: Server, request: srv.GetLightPropertiesRequest
+) -> srv.GetLightPropertiesResponse:
     """Return a light's diffuse colour and attenuation."""
-    response = GetLightPropertiesResponse()
+    response = srv.GetLightPropertiesResponse()
     light = server.world.lights.get(request.light_name)
     if light is None:
         text = f'getLightProperties: Requested light {request.light_name} not found!'
@@ -40,16 +30,16 @@ def get_light_properties(
     return response
 
 
-@service('set_light_properties', SetLightProperties)
+@service('set_light_properties', srv.SetLightProperties)
 def set_light_properties(
-    server: Server, request: SetLightPropertiesRequest
-) -> SetLightPropertiesResponse:
+    server: Server, request: srv.SetLightPropertiesRequest
+) -> srv.SetLightPropertiesResponse:
     """Change a light; every field is used, zeros included."""
     require_finite(request)
     lights, name = server.world.lights, request.light_name
     if name not in lights:
         text = f'setLightProperties: Requested light {name} not found!'
-        return refuse(SetLightPropertiesResponse(), text)
+        return refuse(srv.SetLightPropertiesResponse(), text)
     lights[name] = replace(
         lights[name],
         cast_shadows=request.cast_shadows,
@@ -59,17 +49,17 @@ def set_light_properties(
         pose=read_pose(request.pose),
         **{field: getattr(request, field) for field in _ATTENUATION},
     )
-    return SetLightPropertiesResponse(success=True)
+    return srv.SetLightPropertiesResponse(success=True)
 
 
-@service('delete_light', DeleteLight)
-def delete_light(server: Server, request: DeleteLightRequest) -> DeleteLightResponse:
+@service('delete_light', srv.DeleteLight)
+def delete_light(server: Server, request: srv.DeleteLightRequest) -> srv.DeleteLightResponse:
     """Delete a light; an unknown name gets Gazebo's text, but at once."""
     name = request.light_name
     if server.world.lights.pop(name, None) is None:
         text = f'DeleteLight: Timeout reached while removing light "{name}"'
-        return refuse(DeleteLightResponse(), text)
-    return DeleteLightResponse(True, f'DeleteLight: {name} successfully deleted')
+        return refuse(srv.DeleteLightResponse(), text)
+    return srv.DeleteLightResponse(True, f'DeleteLight: {name} successfully deleted')
 
 
 def _read_colour(message: ColorRGBA) -> Colour:

@@ -1,13 +1,6 @@
 """Services about the inertial properties of links."""
 
-from gazebo_msgs.srv import (
-    GetLinkProperties,
-    GetLinkPropertiesRequest,
-    GetLinkPropertiesResponse,
-    SetLinkProperties,
-    SetLinkPropertiesRequest,
-    SetLinkPropertiesResponse,
-)
+from gazebo_msgs import srv
 from geometry_msgs.msg import Point
 
 from ...sim.core import MAX_LENGTH, Pose
@@ -24,12 +17,12 @@ _MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 _DEFAULT = Inertial(1.0, ixx=1.0, iyy=1.0, izz=1.0)
 
 
-@service('get_link_properties', GetLinkProperties)
+@service('get_link_properties', srv.GetLinkProperties)
 def get_link_properties(
-    server: Server, request: GetLinkPropertiesRequest
-) -> GetLinkPropertiesResponse:
+    server: Server, request: srv.GetLinkPropertiesRequest
+) -> srv.GetLinkPropertiesResponse:
     """Return mass, centre of mass and the inertia about it, in the axes of the link."""
-    response = GetLinkPropertiesResponse()
+    response = srv.GetLinkPropertiesResponse()
     link = find_link(server.world, request.link_name)
     if link is None:
         return refuse(response, f'GetLinkProperties: {NO_LINK}')
@@ -43,10 +36,10 @@ def get_link_properties(
     return response
 
 
-@service('set_link_properties', SetLinkProperties)
+@service('set_link_properties', srv.SetLinkProperties)
 def set_link_properties(
-    server: Server, request: SetLinkPropertiesRequest
-) -> SetLinkPropertiesResponse:
+    server: Server, request: srv.SetLinkPropertiesRequest
+) -> srv.SetLinkPropertiesResponse:
     """Change mass, centre of mass, inertia and gravity mode of a link; its velocity is kept.
 
     As in Gazebo the orientation of `com` is ignored: the tensor is in the link's axes.
@@ -54,7 +47,7 @@ def set_link_properties(
     require_finite(request)
     link = find_link(server.world, request.link_name)
     if link is None:
-        return refuse(SetLinkPropertiesResponse(), f'SetLinkProperties: {NO_LINK}')
+        return refuse(srv.SetLinkPropertiesResponse(), f'SetLinkProperties: {NO_LINK}')
     inertial = Inertial(
         request.mass,
         Pose(read_vector(request.com.position)),
@@ -67,4 +60,4 @@ def set_link_properties(
             f'at most {MAX_LENGTH:g} m are accepted'
         )
     set_inertial(link, inertial, request.gravity_mode)
-    return SetLinkPropertiesResponse(True, 'SetLinkProperties: properties set')
+    return srv.SetLinkPropertiesResponse(True, 'SetLinkProperties: properties set')

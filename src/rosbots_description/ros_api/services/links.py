@@ -1,19 +1,6 @@
 """Services about links: their state, and external wrenches."""
 
-from gazebo_msgs.srv import (
-    ApplyBodyWrench,
-    ApplyBodyWrenchRequest,
-    ApplyBodyWrenchResponse,
-    BodyRequest,
-    BodyRequestRequest,
-    BodyRequestResponse,
-    GetLinkState,
-    GetLinkStateRequest,
-    GetLinkStateResponse,
-    SetLinkState,
-    SetLinkStateRequest,
-    SetLinkStateResponse,
-)
+from gazebo_msgs import srv
 
 from ...sim.core import (
     IDENTITY,
@@ -46,10 +33,10 @@ def find_link(world: World, name: str) -> Link | None:
     return entity if isinstance(entity, Link) else None
 
 
-@service('get_link_state', GetLinkState)
-def get_link_state(server: Server, request: GetLinkStateRequest) -> GetLinkStateResponse:
+@service('get_link_state', srv.GetLinkState)
+def get_link_state(server: Server, request: srv.GetLinkStateRequest) -> srv.GetLinkStateResponse:
     """Return a link's pose and twist relative to an entity or the world."""
-    world, response = server.world, GetLinkStateResponse()
+    world, response = server.world, srv.GetLinkStateResponse()
     link = find_link(world, request.link_name)
     if link is None:
         return refuse(response, f'GetLinkState: {NO_LINK}')
@@ -66,8 +53,8 @@ def get_link_state(server: Server, request: GetLinkStateRequest) -> GetLinkState
     return response
 
 
-@service('set_link_state', SetLinkState)
-def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkStateResponse:
+@service('set_link_state', srv.SetLinkState)
+def set_link_state(server: Server, request: srv.SetLinkStateRequest) -> srv.SetLinkStateResponse:
     """Set a link's pose and velocity, given in the frame of a link or the world.
 
     As in Gazebo v = v_given - v_frame, without a rotation.
@@ -76,13 +63,13 @@ def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkState
     state = request.link_state
     link = find_link(server.world, state.link_name)
     if link is None:
-        return refuse(SetLinkStateResponse(), 'SetLinkState: link does not exist')
+        return refuse(srv.SetLinkStateResponse(), 'SetLinkState: link does not exist')
     try:
         frame = _frame_entity(server.world, state.reference_frame)
     except NotFoundError:
-        return refuse(SetLinkStateResponse(), 'SetLinkState: failed')
+        return refuse(srv.SetLinkStateResponse(), 'SetLinkState: failed')
     if not isinstance(frame, Link | None):
-        return refuse(SetLinkStateResponse(), 'SetLinkState: failed')
+        return refuse(srv.SetLinkStateResponse(), 'SetLinkState: failed')
     frame_pose, frame_twist = frame.state() if frame else (IDENTITY, Twist())
     given = read_twist(state.twist)
     twist = Twist(
@@ -90,21 +77,23 @@ def set_link_state(server: Server, request: SetLinkStateRequest) -> SetLinkState
     )
     pose = compose(frame_pose, read_pose(state.pose))
     link.model.move_link(link, pose, Twist() if link.model.static else twist)
-    return SetLinkStateResponse(True, 'SetLinkState: success')
+    return srv.SetLinkStateResponse(True, 'SetLinkState: success')
 
 
-@service('apply_body_wrench', ApplyBodyWrench)
-def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyBodyWrenchResponse:
+@service('apply_body_wrench', srv.ApplyBodyWrench)
+def apply_body_wrench(
+    server: Server, request: srv.ApplyBodyWrenchRequest
+) -> srv.ApplyBodyWrenchResponse:
     """Apply a wrench to a link from `start_time`, for `duration`; negative: without end."""
     require_finite(request)
     world = server.world
     link = find_link(world, request.body_name)
     if link is None:
-        return refuse(ApplyBodyWrenchResponse(), 'ApplyBodyWrench: body does not exist')
+        return refuse(srv.ApplyBodyWrenchResponse(), 'ApplyBodyWrench: body does not exist')
     try:
         frame = _frame_entity(world, request.reference_frame)
     except NotFoundError:
-        return refuse(ApplyBodyWrenchResponse(), 'ApplyBodyWrench: reference_frame not found')
+        return refuse(srv.ApplyBodyWrenchResponse(), 'ApplyBodyWrench: reference_frame not found')
     force, torque = world_wrench(
         read_vector(request.wrench.force),
         read_vector(request.wrench.torque),
@@ -114,16 +103,16 @@ def apply_body_wrench(server: Server, request: ApplyBodyWrenchRequest) -> ApplyB
     )
     start, duration = request.start_time.to_nsec(), request.duration.to_nsec()
     world.external_forces.add(link, lambda: link.apply_wrench(force, torque), start, duration)
-    return ApplyBodyWrenchResponse(success=True)
+    return srv.ApplyBodyWrenchResponse(success=True)
 
 
-@service('clear_body_wrenches', BodyRequest)
-def clear_body_wrenches(server: Server, request: BodyRequestRequest) -> BodyRequestResponse:
+@service('clear_body_wrenches', srv.BodyRequest)
+def clear_body_wrenches(server: Server, request: srv.BodyRequestRequest) -> srv.BodyRequestResponse:
     """Remove all wrenches on the link of that scoped name."""
     server.world.external_forces.cancel(
         lambda target: isinstance(target, Link) and target.scoped_name == request.body_name
     )
-    return BodyRequestResponse()
+    return srv.BodyRequestResponse()
 
 
 def world_wrench(

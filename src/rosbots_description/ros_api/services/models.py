@@ -2,23 +2,7 @@
 
 import logging
 
-from gazebo_msgs.srv import (
-    DeleteModel,
-    DeleteModelRequest,
-    DeleteModelResponse,
-    GetModelProperties,
-    GetModelPropertiesRequest,
-    GetModelPropertiesResponse,
-    GetModelState,
-    GetModelStateRequest,
-    GetModelStateResponse,
-    SetModelConfiguration,
-    SetModelConfigurationRequest,
-    SetModelConfigurationResponse,
-    SetModelState,
-    SetModelStateRequest,
-    SetModelStateResponse,
-)
+from gazebo_msgs import srv
 
 from ...sim.core import NotFoundError, Pose, Twist, compose, conjugate, relative, rotate, subtract
 from ...sim.runtime import Joint
@@ -31,26 +15,26 @@ logger = logging.getLogger(__name__)
 _INNER = '::'  # separates the name of a nested model from those of its parts
 
 
-@service('delete_model', DeleteModel, registers=True)
-def delete_model(server: Server, request: DeleteModelRequest) -> DeleteModelResponse:
+@service('delete_model', srv.DeleteModel, registers=True)
+def delete_model(server: Server, request: srv.DeleteModelRequest) -> srv.DeleteModelResponse:
     """Delete a model with its plugins and their topics."""
     name = request.model_name
     try:
         server.world.delete(name)
     except NotFoundError:
         logger.error('DeleteModel: model [%s] does not exist', name)
-        return DeleteModelResponse(False, 'DeleteModel: model does not exist')
-    return DeleteModelResponse(True, 'DeleteModel: successfully deleted model')
+        return srv.DeleteModelResponse(False, 'DeleteModel: model does not exist')
+    return srv.DeleteModelResponse(True, 'DeleteModel: successfully deleted model')
 
 
-class _CountedState(GetModelStateResponse):  # type: ignore[misc]  # messages have none
+class _CountedState(srv.GetModelStateResponse):  # type: ignore[misc]  # messages have none
     """A response with our own header.seq; rospy would set the number of the call."""
 
     _has_header = False
 
 
-@service('get_model_state', GetModelState)
-def get_model_state(server: Server, request: GetModelStateRequest) -> GetModelStateResponse:
+@service('get_model_state', srv.GetModelState)
+def get_model_state(server: Server, request: srv.GetModelStateRequest) -> srv.GetModelStateResponse:
     """Return a model's pose and twist relative to an entity or the world."""
     response = _CountedState()
     model = server.world.find_model(request.model_name)
@@ -90,12 +74,12 @@ def relative_state(state: tuple[Pose, Twist], frame: tuple[Pose, Twist]) -> tupl
     )
 
 
-@service('get_model_properties', GetModelProperties)
+@service('get_model_properties', srv.GetModelProperties)
 def get_model_properties(
-    server: Server, request: GetModelPropertiesRequest
-) -> GetModelPropertiesResponse:
+    server: Server, request: srv.GetModelPropertiesRequest
+) -> srv.GetModelPropertiesResponse:
     """Return the parts of a model by their plain names, without those of nested models."""
-    response = GetModelPropertiesResponse()
+    response = srv.GetModelPropertiesResponse()
     model = server.world.find_model(request.model_name)
     if model is None:
         return refuse(response, 'GetModelProperties: model does not exist')
@@ -110,8 +94,8 @@ def get_model_properties(
     return response
 
 
-@service('set_model_state', SetModelState)
-def set_model_state(server: Server, request: SetModelStateRequest) -> SetModelStateResponse:
+@service('set_model_state', srv.SetModelState)
+def set_model_state(server: Server, request: srv.SetModelStateRequest) -> srv.SetModelStateResponse:
     """Set a model's pose and velocity, both given in the frame of an entity or the world.
 
     As in Gazebo the velocity of the frame itself is not added.
@@ -120,12 +104,12 @@ def set_model_state(server: Server, request: SetModelStateRequest) -> SetModelSt
     state = request.model_state
     model = server.world.find_model(state.model_name)
     if model is None:
-        return refuse(SetModelStateResponse(), 'SetModelState: model does not exist')
+        return refuse(srv.SetModelStateResponse(), 'SetModelState: model does not exist')
     try:
         frame, _ = server.world.frame(state.reference_frame)
     except NotFoundError:
         return refuse(
-            SetModelStateResponse(),
+            srv.SetModelStateResponse(),
             'SetModelState: specified reference frame entity does not exist',
         )
     model.set_pose(compose(frame, read_pose(state.pose)))
@@ -134,16 +118,16 @@ def set_model_state(server: Server, request: SetModelStateRequest) -> SetModelSt
         model.set_twist(
             Twist(rotate(frame.orientation, twist.linear), rotate(frame.orientation, twist.angular))
         )
-    return SetModelStateResponse(True, 'SetModelState: set model state done')
+    return srv.SetModelStateResponse(True, 'SetModelState: set model state done')
 
 
-@service('set_model_configuration', SetModelConfiguration)
+@service('set_model_configuration', srv.SetModelConfiguration)
 def set_model_configuration(
-    server: Server, request: SetModelConfigurationRequest
-) -> SetModelConfigurationResponse:
+    server: Server, request: srv.SetModelConfigurationRequest
+) -> srv.SetModelConfigurationResponse:
     """Set joint positions [rad or m], clamped to their limits; unknown names are ignored."""
     require_finite(request)
-    response = SetModelConfigurationResponse()
+    response = srv.SetModelConfigurationResponse()
     model = server.world.find_model(request.model_name)
     if model is None:
         return refuse(response, 'SetModelConfiguration: model does not exist')
@@ -156,7 +140,7 @@ def set_model_configuration(
         joint = model.joints.get(name.removeprefix(f'{model.name}::'))
         if joint is not None:
             joint.set_position(_within_limits(joint, position))
-    return SetModelConfigurationResponse(True, 'SetModelConfiguration: success')
+    return srv.SetModelConfigurationResponse(True, 'SetModelConfiguration: success')
 
 
 def _within_limits(joint: Joint, position: float) -> float:

@@ -2,15 +2,8 @@
 
 from dataclasses import replace
 
+from gazebo_msgs import srv
 from gazebo_msgs.msg import ODEPhysics
-from gazebo_msgs.srv import (
-    GetPhysicsProperties,
-    GetPhysicsPropertiesRequest,
-    GetPhysicsPropertiesResponse,
-    SetPhysicsProperties,
-    SetPhysicsPropertiesRequest,
-    SetPhysicsPropertiesResponse,
-)
 from geometry_msgs.msg import Vector3
 
 from ...sim.description import check_physics
@@ -19,13 +12,13 @@ from ..server import Server
 from .registry import service
 
 
-@service('get_physics_properties', GetPhysicsProperties)
+@service('get_physics_properties', srv.GetPhysicsProperties)
 def get_physics_properties(
-    server: Server, _request: GetPhysicsPropertiesRequest
-) -> GetPhysicsPropertiesResponse:
+    server: Server, _request: srv.GetPhysicsPropertiesRequest
+) -> srv.GetPhysicsPropertiesResponse:
     """Return the current settings."""
     physics = server.world.physics
-    return GetPhysicsPropertiesResponse(
+    return srv.GetPhysicsPropertiesResponse(
         time_step=physics.step_size,
         pause=server.world.paused,
         max_update_rate=physics.max_update_rate,
@@ -36,10 +29,10 @@ def get_physics_properties(
     )
 
 
-@service('set_physics_properties', SetPhysicsProperties)
+@service('set_physics_properties', srv.SetPhysicsProperties)
 def set_physics_properties(
-    server: Server, request: SetPhysicsPropertiesRequest
-) -> SetPhysicsPropertiesResponse:
+    server: Server, request: srv.SetPhysicsPropertiesRequest
+) -> srv.SetPhysicsPropertiesResponse:
     """Change the settings from the next step on; every field is used, zeros included.
 
     The friction model is not part of the request and is kept.
@@ -57,4 +50,4 @@ def set_physics_properties(
     check_physics(physics)
     server.world.set_physics(physics)
     server.physics_changed()
-    return SetPhysicsPropertiesResponse(True, 'physics engine updated')
+    return srv.SetPhysicsPropertiesResponse(True, 'physics engine updated')

@@ -1,10 +1,6 @@
 """Services about the simulation as a whole: pause, reset, world properties."""
 
-from gazebo_msgs.srv import (
-    GetWorldProperties,
-    GetWorldPropertiesRequest,
-    GetWorldPropertiesResponse,
-)
+from gazebo_msgs import srv
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
 from ..server import Server
@@ -39,12 +35,12 @@ def reset_simulation(server: Server, _request: EmptyRequest) -> EmptyResponse:
     return EmptyResponse()
 
 
-@service('get_world_properties', GetWorldProperties)
+@service('get_world_properties', srv.GetWorldProperties)
 def get_world_properties(
-    server: Server, _request: GetWorldPropertiesRequest
-) -> GetWorldPropertiesResponse:
+    server: Server, _request: srv.GetWorldPropertiesRequest
+) -> srv.GetWorldPropertiesResponse:
     """Return time [s] and model names in world order; as in Gazebo rendering_enabled is true."""
-    return GetWorldPropertiesResponse(
+    return srv.GetWorldPropertiesResponse(
         sim_time=server.world.clock.now,
         model_names=list(server.world.models),
         rendering_enabled=True,

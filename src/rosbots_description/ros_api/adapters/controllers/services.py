@@ -16,27 +16,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 import rospy
+from controller_manager_msgs import srv
 from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
-from controller_manager_msgs.srv import (
-    ListControllers,
-    ListControllersRequest,
-    ListControllersResponse,
-    ListControllerTypes,
-    ListControllerTypesRequest,
-    ListControllerTypesResponse,
-    LoadController,
-    LoadControllerRequest,
-    LoadControllerResponse,
-    ReloadControllerLibraries,
-    ReloadControllerLibrariesRequest,
-    ReloadControllerLibrariesResponse,
-    SwitchController,
-    SwitchControllerRequest,
-    SwitchControllerResponse,
-    UnloadController,
-    UnloadControllerRequest,
-    UnloadControllerResponse,
-)
 
 from ....sim.controllers import ControllerError, ControllerManager, RosControl
 from ....sim.core import SimError
@@ -45,7 +26,7 @@ from ...transport import is_valid_name, read_parameter, topic_name
 
 logger = logging.getLogger(__name__)
 
-STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT
+STRICT, BEST_EFFORT = srv.SwitchControllerRequest.STRICT, srv.SwitchControllerRequest.BEST_EFFORT
 BASE = 'controller_interface::ControllerBase'
 
 Result = TypeVar('Result')
@@ -66,12 +47,12 @@ class ManagerServices:
         self._one_at_a_time = threading.Lock()
         self._services: list[rospy.Service] = []
         handlers: dict[str, tuple[type, Handler]] = {
-            'list_controllers': (ListControllers, self._list),
-            'list_controller_types': (ListControllerTypes, self._types),
-            'load_controller': (LoadController, self._load),
-            'unload_controller': (UnloadController, self._unload),
-            'switch_controller': (SwitchController, self._switch),
-            'reload_controller_libraries': (ReloadControllerLibraries, self._reload),
+            'list_controllers': (srv.ListControllers, self._list),
+            'list_controller_types': (srv.ListControllerTypes, self._types),
+            'load_controller': (srv.LoadController, self._load),
+            'unload_controller': (srv.UnloadController, self._unload),
+            'switch_controller': (srv.SwitchController, self._switch),
+            'reload_controller_libraries': (srv.ReloadControllerLibraries, self._reload),
         }
         try:
             for name, (kind, handler) in handlers.items():
@@ -114,8 +95,8 @@ class ManagerServices:
         self._server.registrar.await_registration('controller_manager')
         return True
 
-    def _list(self, _request: ListControllersRequest) -> ListControllersResponse:
-        return ListControllersResponse(
+    def _list(self, _request: srv.ListControllersRequest) -> srv.ListControllersResponse:
+        return srv.ListControllersResponse(
             [
                 ControllerState(
                     one.name,
@@ -130,11 +111,11 @@ class ManagerServices:
             ]
         )
 
-    def _types(self, _request: ListControllerTypesRequest) -> ListControllerTypesResponse:
+    def _types(self, _request: srv.ListControllerTypesRequest) -> srv.ListControllerTypesResponse:
         types = self._call(lambda manager: manager.types())
-        return ListControllerTypesResponse(*map(list, zip(*types, strict=True)))
+        return srv.ListControllerTypesResponse(*map(list, zip(*types, strict=True)))
 
-    def _load(self, request: LoadControllerRequest) -> LoadControllerResponse:
+    def _load(self, request: srv.LoadControllerRequest) -> srv.LoadControllerResponse:
         name = request.name
         own = topic_name(self._namespace, name)
         if not is_valid_name(own):
@@ -144,19 +125,19 @@ class ManagerServices:
                 name,
                 own,
             )
-            return LoadControllerResponse(False)
+            return srv.LoadControllerResponse(False)
         found = read_parameter(own, {})
         parameters = found if isinstance(found, Mapping) else {}
         kind = parameters.get('type')
         type_name = kind if isinstance(kind, str) else ''
-        return LoadControllerResponse(
+        return srv.LoadControllerResponse(
             self._try(lambda manager: manager.load(name, type_name, parameters))
         )
 
-    def _unload(self, request: UnloadControllerRequest) -> UnloadControllerResponse:
-        return UnloadControllerResponse(self._try(lambda manager: manager.unload(request.name)))
+    def _unload(self, request: srv.UnloadControllerRequest) -> srv.UnloadControllerResponse:
+        return srv.UnloadControllerResponse(self._try(lambda manager: manager.unload(request.name)))
 
-    def _switch(self, request: SwitchControllerRequest) -> SwitchControllerResponse:
+    def _switch(self, request: srv.SwitchControllerRequest) -> srv.SwitchControllerResponse:
         strictness = request.strictness
         if strictness == 0:
             logger.warning(
@@ -166,7 +147,7 @@ class ManagerServices:
                 STRICT,
                 BEST_EFFORT,
             )
-        return SwitchControllerResponse(
+        return srv.SwitchControllerResponse(
             self._try(
                 lambda manager: manager.switch(
                     request.start_controllers, request.stop_controllers, strictness == STRICT
@@ -175,8 +156,8 @@ class ManagerServices:
         )
 
     def _reload(
-        self, request: ReloadControllerLibrariesRequest
-    ) -> ReloadControllerLibrariesResponse:
+        self, request: srv.ReloadControllerLibrariesRequest
+    ) -> srv.ReloadControllerLibrariesResponse:
         """Unload all controllers if asked to; the code of controllers itself stays as it is."""
         names = [one.name for one in self._call(lambda manager: manager.list())]
         if names and not request.force_kill:
@@ -185,7 +166,7 @@ class ManagerServices:
                 'are still %d controllers running',
                 len(names),
             )
-            return ReloadControllerLibrariesResponse(False)
+            return srv.ReloadControllerLibrariesResponse(False)
 
         def kill(manager: ControllerManager) -> None:
             manager.switch([], names, strict=False)
@@ -197,4 +178,4 @@ class ManagerServices:
         done = not names or self._try(kill)
         if done:
             logger.info("Controller manager: reloaded controller libraries for '%s'", BASE)
-        return ReloadControllerLibrariesResponse(done)
+        return srv.ReloadControllerLibrariesResponse(done)

@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from typing import cast
 
 import rospy
+from control_msgs import srv
 from control_msgs.msg import (
     FollowJointTrajectoryAction,
     FollowJointTrajectoryFeedback,
@@ -22,11 +23,6 @@ from control_msgs.msg import (
     FollowJointTrajectoryResult,
     JointTolerance,
     JointTrajectoryControllerState,
-)
-from control_msgs.srv import (
-    QueryTrajectoryState,
-    QueryTrajectoryStateRequest,
-    QueryTrajectoryStateResponse,
 )
 from trajectory_msgs.msg import JointTrajectory
 
@@ -93,15 +89,15 @@ def offer_query(adapter: Adapter, name: str) -> Callable[[], None]:
     """Offer the service that tells the desired state at a time."""
     controller = cast(JointTrajectoryController, adapter.plugin)
 
-    def answer(request: QueryTrajectoryStateRequest) -> QueryTrajectoryStateResponse:
+    def answer(request: srv.QueryTrajectoryStateRequest) -> srv.QueryTrajectoryStateResponse:
         try:
             point = adapter.server.loop.call(lambda: controller.query(request.time.to_nsec()))
         except SimError as error:
             logger.error('%s', error)
             raise rospy.ServiceException(str(error)) from None
-        return QueryTrajectoryStateResponse(list(controller.joint_names), *map(list, point[:3]))
+        return srv.QueryTrajectoryStateResponse(list(controller.joint_names), *map(list, point[:3]))
 
-    shutdown: Callable[[], None] = rospy.Service(name, QueryTrajectoryState, answer).shutdown
+    shutdown: Callable[[], None] = rospy.Service(name, srv.QueryTrajectoryState, answer).shutdown
     return shutdown
 
 
