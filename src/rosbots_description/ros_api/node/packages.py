@@ -4,6 +4,7 @@ import contextlib
 import os
 from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import rospkg
@@ -94,3 +95,9 @@ find_file = FileSearch(
         lambda: exported_directories('gazebo_media_path'),
     ]
 )
+
+SEARCHES: dict[str, Any] = {  # arguments of what reads models and worlds
+    'find_file': find_file,
+    'find_model': find_model,
+    'find_package': find_package,
+}

@@ -8,7 +8,7 @@ from ...sim.core import NotFoundError
 from ...sim.description import WorldSpec
 from ...sim.formats import open_world
 from ...sim.resources import find_world, path_directories
-from .packages import exported_directories, find_file, find_model, find_package
+from .packages import SEARCHES, exported_directories
 
 _OWN = Path(__file__).resolve().parents[2]  # holds worlds/, wherever this library is installed
 
@@ -22,9 +22,7 @@ def read_world(name: str) -> WorldSpec:
     Raises:
         SimError: there is no such file, or it contains no world.
     """
-    return open_world(
-        _find(name), find_model=find_model, find_package=find_package, find_file=find_file
-    )
+    return open_world(_find(name), **SEARCHES)
 
 
 def own_worlds() -> list[str]:

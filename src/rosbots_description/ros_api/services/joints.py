@@ -1,6 +1,5 @@
 """Services about joints: their state, their limits, and external efforts."""
 
-import contextlib
 from dataclasses import replace
 from typing import Any
 
@@ -89,14 +88,8 @@ def _is_fixed(world: World, name: str) -> bool:
 def _change(joint: Joint, config: ODEJointProperties) -> None:
     """Apply the fields that have a counterpart here; only the first axis of each array is used."""
     velocity, effort = changed_motor(joint.spec.name, joint.motor, config)
-    changes = {}
-    for field, values in (
-        ('damping', config.damping),
-        ('lower', config.loStop),
-        ('upper', config.hiStop),
-    ):
-        with contextlib.suppress(IndexError):
-            changes[field] = values[0]
+    given = {'damping': config.damping, 'lower': config.loStop, 'upper': config.hiStop}
+    changes = {field: values[0] for field, values in given.items() if values}
     spec = changed_spec(joint.spec, changes)
     # Nothing above changes the joint, so a rejected request has no effect.
     if (velocity, effort) != joint.motor:

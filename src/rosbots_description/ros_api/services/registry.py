@@ -28,8 +28,8 @@ class Service:
     name: str  # without the node's name
     type: type[Any]
     answer: Answer
-    prepare: Answer | None
-    registers: bool  # adds or removes topics; the response waits for their registration
+    prepare: Answer | None = None
+    registers: bool = False  # adds or removes topics; the response waits for their registration
     on_loop: bool = True  # whether `answer` runs on the loop's thread or on the caller's
 
 

@@ -60,7 +60,7 @@ def _read_urdf(server: Server, request: SpawnModelRequest) -> PreparedModel | Sp
             'This service takes URDF: XML whose outermost element is <robot>'
         )
     try:
-        return _prepare(server, request, lambda: _load_urdf(server, request))
+        return _prepare(server, request, load_urdf)
     except UnknownPackage as error:
         logger.critical('%s', error)
         raise CallError(f'SpawnModel: Failure - {error}') from None
@@ -72,40 +72,18 @@ def read_description(
     """Parse, compile and test a URDF or an SDF model, or parse a light; called beside the loop."""
     kind = root_tag(request.model_xml)
     if kind == 'robot':
-        return _prepare(server, request, lambda: _load_urdf(server, request))
+        return _prepare(server, request, load_urdf)
     if kind not in ('sdf', 'gazebo'):
         return refuse(SpawnModelResponse(), _NO_FORMAT)
     light = load_sdf_light(request.model_xml, request.model_name)
     if light is not None:
         # The frame must exist although, as in Gazebo, a light has the pose in its description.
         return server.loop.call(lambda: _frame_refusal(server, request.reference_frame)) or light
-    return _prepare(
-        server,
-        request,
-        lambda: load_sdf(
-            request.model_xml,
-            request.model_name,
-            robot_namespace=request.robot_namespace,
-            find_model=server.find_model,
-            find_package=server.find_package,
-            find_file=server.find_file,
-        ),
-    )
-
-
-def _load_urdf(server: Server, request: SpawnModelRequest) -> tuple[ModelSpec, Pose]:
-    return load_urdf(
-        request.model_xml,
-        request.model_name,
-        robot_namespace=request.robot_namespace,
-        find_package=server.find_package,
-        find_model=server.find_model,
-        find_file=server.find_file,
-    )
+    return _prepare(server, request, load_sdf)
 
 
 def _prepare(
-    server: Server, request: SpawnModelRequest, load: Callable[[], tuple[ModelSpec, Pose]]
+    server: Server, request: SpawnModelRequest, load: Callable[..., tuple[ModelSpec, Pose]]
 ) -> PreparedModel | SpawnModelResponse:
     """Parse the model, compile it and test it in the sandbox, while the simulation goes on."""
     name, frame = request.model_name, request.reference_frame
@@ -115,7 +93,14 @@ def _prepare(
     refusal = server.loop.call(lambda: _refusal(server, name, frame))
     if refusal is not None:
         return refusal
-    spec, origin = load()
+    spec, origin = load(
+        request.model_xml,
+        name,
+        robot_namespace=request.robot_namespace,
+        find_package=server.find_package,
+        find_model=server.find_model,
+        find_file=server.find_file,
+    )
     model = server.world.compile(spec)
     server.sandbox.require(model, server.world.physics, caller_waits)
     return PreparedModel(name, model, compose(pose, origin), frame)

@@ -6,7 +6,7 @@ Subscribes:
 Errors are only logged.
 """
 
-from collections.abc import Callable
+from functools import partial
 
 import rospy
 from gazebo_msgs.msg import LinkState, ModelState
@@ -25,11 +25,9 @@ def subscribe_states(server: Server) -> None:
         ('set_link_state', LinkState, SetLinkStateRequest),
         ('set_model_state', ModelState, SetModelStateRequest),
     ):
-        rospy.Subscriber(f'~{name}', message, _command(server, name, request), queue_size=QUEUE)
+        carry_out = partial(_carry_out, server, name, request)
+        rospy.Subscriber(f'~{name}', message, carry_out, queue_size=QUEUE)
 
 
-def _command(server: Server, name: str, request: type) -> Callable[[Message], None]:
-    def carry_out(message: Message) -> None:
-        respond(server, SERVICES[name], request(message))
-
-    return carry_out
+def _carry_out(server: Server, name: str, request: type, message: Message) -> None:
+    respond(server, SERVICES[name], request(message))

@@ -5,7 +5,7 @@ Publishes:
     ~model_states (gazebo_msgs/ModelStates): every step while subscribed.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from gazebo_msgs.msg import LinkStates, ModelStates
 from genpy import Message
@@ -20,9 +20,16 @@ from .topic import Topic
 class StatesTopic(Topic, Hook):
     """Names, poses and twists of models or links in the world frame, in each step."""
 
-    def __init__(self, server: Server, name: str, message: Message) -> None:
+    def __init__(
+        self,
+        server: Server,
+        name: str,
+        message: Message,
+        entities: Callable[[], Iterable[Model | Link]],
+    ) -> None:
+        """Advertise the topic; `entities` returns the models or links to list, in order."""
         super().__init__(server, name, type(message))
-        self._message = message
+        self._message, self._entities = message, entities
 
     def before_step(self) -> None:
         """Publish, and schedule the next step."""
@@ -30,14 +37,10 @@ class StatesTopic(Topic, Hook):
         self._publisher.publish(self._message)
         self.schedule()
 
-    def entities(self) -> Iterable[Model | Link]:
-        """Return the models or links to list, in order."""
-        raise NotImplementedError
-
     def fill(self) -> None:
         """Fill in the current states; message objects are reused."""
         message = self._message
-        entities = list(self.entities())
+        entities = list(self._entities())
         message.name = [entity.scoped_name for entity in entities]
         while len(message.pose) < len(entities):
             message.pose.append(Pose())
@@ -51,36 +54,23 @@ class StatesTopic(Topic, Hook):
             fill_twist(twist_message, twist)
 
 
-class LinkStatesTopic(StatesTopic):
-    """All links by scoped name; as in Gazebo without those of nested models."""
+def advertise_states(server: Server) -> None:
+    """Publish link and model states, after the clock and before any plugin."""
+    models = server.world.models
 
-    def __init__(self, server: Server) -> None:
-        super().__init__(server, '~link_states', LinkStates())
-
-    def entities(self) -> Iterable[Link]:
-        """Return all links, model by model in world order."""
+    def links() -> Iterable[Link]:
+        """Return all links, model by model; as in Gazebo without those of nested models."""
         return (
             link
-            for model in self._world.models.values()
+            for model in models.values()
             for link in model.links.values()
             if '::' not in link.name
         )
 
-
-class ModelStatesTopic(StatesTopic):
-    """All models by name."""
-
-    def __init__(self, server: Server) -> None:
-        super().__init__(server, '~model_states', ModelStates())
-
-    def entities(self) -> Iterable[Model]:
-        """Return all models in world order."""
-        return self._world.models.values()
-
-
-def advertise_states(server: Server) -> None:
-    """Publish link and model states, after the clock and before any plugin."""
-    for topic in (LinkStatesTopic(server), ModelStatesTopic(server)):
+    for topic in (
+        StatesTopic(server, '~link_states', LinkStates(), links),
+        StatesTopic(server, '~model_states', ModelStates(), models.values),
+    ):
         server.world.schedule.add(topic)
         server.world.listeners.append(topic)
         topic.schedule()

@@ -119,14 +119,8 @@ def test_info_names_joints_and_links_by_their_scoped_names():
     lines = do(simulator, 'model', '-m', 'box', '-i')
     assert lines[:2] == ['name: "box"', 'is_static: false']
     assert '    y: -2.5' in lines
-    assert lines[-6:] == [
-        'joint {',
-        '  name: "box::hinge"',
-        '}',
-        'link {',
-        '  name: "box::arm"',
-        '}',
-    ]
+    assert lines[-6:-3] == ['joint {', '  name: "box::hinge"', '}']
+    assert lines[-3:] == ['link {', '  name: "box::arm"', '}']
 
 
 def test_physics_changes_what_is_given_and_keeps_the_rest():
@@ -146,16 +140,8 @@ def stats(times, *options, paused=False):
         get_physics_properties=SimpleNamespace(pause=paused),
     )
     wall = count(100.0, 0.25)
-    duration = str(0.25 * (len(times) - 1) + 0.01)
-    return do(
-        simulator,
-        'stats',
-        '-d',
-        duration,
-        *options,
-        clock=lambda: next(wall),
-        sleep=lambda _seconds: None,
-    )
+    options = '-d', str(0.25 * (len(times) - 1) + 0.01), *options
+    return do(simulator, 'stats', *options, clock=lambda: next(wall), sleep=lambda _seconds: None)
 
 
 def test_stats_prints_gazebos_line_until_the_duration_is_over():

@@ -24,23 +24,8 @@ def test_defaults_are_gazebos():
 
 
 def test_command_line_of_the_article_with_remappings_of_roslaunch():
-    flags = parse_arguments(
-        [
-            '-urdf',
-            '-param',
-            'robot_description',
-            '-model',
-            'rosbots',
-            '-x',
-            '0',
-            '-y',
-            '-1.5',
-            '-z',
-            '0.5',
-            '__name:=mybot_spawn',
-            '__log:=/x.log',
-        ]
-    )
+    remappings = ['__name:=mybot_spawn', '__log:=/x.log']
+    flags = parse_arguments([*MINIMAL, '-x', '0', '-y', '-1.5', '-z', '0.5', *remappings])
     assert (flags.model, flags.y, flags.z) == ('rosbots', -1.5, 0.5)
 
 

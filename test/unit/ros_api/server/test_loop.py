@@ -84,6 +84,10 @@ class CountingWorld:
             self._sleep(steps * self._step_time)
 
 
+def _fail():
+    raise NotFoundError('no such model')
+
+
 @pytest.fixture
 def start():
     """Return a function that runs a loop on a new thread; stop all at the end."""
@@ -198,12 +202,8 @@ def test_ends_after_the_requested_steps():
 
 def test_exception_of_a_command_is_raised_in_the_calling_thread(start):
     loop = start(CountingWorld(rate=1000.0))
-
-    def fail():
-        raise NotFoundError('no such thing')
-
-    with pytest.raises(NotFoundError, match='no such thing'):
-        loop.call(fail)
+    with pytest.raises(NotFoundError, match='no such model'):
+        loop.call(_fail)
     assert loop.call(lambda: 1) == 1
 
 
@@ -288,10 +288,6 @@ def test_work_beside_the_loop_returns_its_result_or_raises(start):
     assert len({*threads, threading.get_ident()}) == 3
     with pytest.raises(NotFoundError, match='no such model'):
         loop.run_in_thread(_fail)
-
-
-def _fail():
-    raise NotFoundError('no such model')
 
 
 def test_caller_does_not_wait_for_work_beside_an_ended_loop():

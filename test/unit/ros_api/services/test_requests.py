@@ -1,6 +1,7 @@
 """Checks and conversions of requests: rejections, wrenches, joint limits, real-time factor."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 from gazebo_msgs.msg import ModelState, ODEJointProperties
@@ -170,11 +171,8 @@ def test_unusual_settings_are_accepted():
 
 
 def test_every_reconfigure_parameter_has_a_value_and_its_type():
-    class Server:
-        class world:  # noqa: N801
-            physics, paused = PhysicsSettings(), False
-
-    live = settings(get_physics_properties(Server, None))
+    world = SimpleNamespace(physics=PhysicsSettings(), paused=False)
+    live = settings(get_physics_properties(SimpleNamespace(world=world), None))
     assert {name: type(value) for name, value in live.items()} == {
         p.name: type(p.default) for p in PARAMETERS
     }

@@ -32,6 +32,10 @@ SERVER = SimpleNamespace(
 DONE = DeleteModelResponse(True, 'done')
 
 
+def _echo(_server, value):
+    return DeleteModelResponse(True, value)
+
+
 def _fail(_server, _request):
     raise ModelError('link a is missing')
 
@@ -41,43 +45,30 @@ def _refuse(_server, _request):
 
 
 def test_service_answers_from_the_prepared_value():
-    entry = Service(
-        's',
-        DeleteModel,
-        lambda _server, value: DeleteModelResponse(True, value),
-        lambda _server, request: request.upper(),
-        registers=False,
-    )
+    entry = Service('s', DeleteModel, _echo, lambda _server, request: request.upper())
     assert respond(SERVER, entry, 'text').status_message == 'TEXT'
 
 
 def test_response_of_the_preparation_is_final():
-    entry = Service('s', DeleteModel, _fail, lambda *_: DONE, registers=False)
+    entry = Service('s', DeleteModel, _fail, lambda *_: DONE)
     assert respond(SERVER, entry, 'text') is DONE
 
 
 @pytest.mark.parametrize(('answer', 'prepare'), [(_fail, None), (lambda *_: DONE, _fail)])
 def test_exception_becomes_a_failure_with_its_message(answer, prepare):
-    response = respond(SERVER, Service('s', DeleteModel, answer, prepare, registers=False), None)
+    response = respond(SERVER, Service('s', DeleteModel, answer, prepare), None)
     assert not response.success
     assert response.status_message == 'DeleteModel: Failure - link a is missing'
 
 
 def test_exception_in_a_service_without_success_field_fails_the_call():
     with pytest.raises(CallError, match=r'^reset_world: Failure - link a is missing'):
-        respond(SERVER, Service('reset_world', Empty, _fail, None, registers=False), None)
+        respond(SERVER, Service('reset_world', Empty, _fail), None)
 
 
 def test_service_off_the_loop_runs_on_the_callers_thread():
     busy = SimpleNamespace(loop=SimpleNamespace(call=_fail))
-    entry = Service(
-        's',
-        DeleteModel,
-        lambda _server, value: DeleteModelResponse(True, value),
-        None,
-        registers=False,
-        on_loop=False,
-    )
+    entry = Service('s', DeleteModel, _echo, on_loop=False)
     assert respond(busy, entry, 'text').status_message == 'text'
 
 
@@ -86,14 +77,14 @@ def test_response_waits_for_the_registration_of_topics(registers):
     waited = []
     registrar = SimpleNamespace(await_registration=waited.append)
     server = SimpleNamespace(loop=SERVER.loop, registrar=registrar)
-    entry = Service('s', DeleteModel, lambda *_: DONE, None, registers=registers)
+    entry = Service('s', DeleteModel, lambda *_: DONE, registers=registers)
     assert respond(server, entry, None) is DONE
     assert waited == ['s'] * registers
 
 
 def test_call_error_fails_the_call():
     with pytest.raises(CallError, match='not like this'):
-        respond(SERVER, Service('s', DeleteModel, _refuse, None, registers=False), None)
+        respond(SERVER, Service('s', DeleteModel, _refuse), None)
 
 
 def test_each_service_has_one_function():
