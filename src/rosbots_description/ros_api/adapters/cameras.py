@@ -167,16 +167,16 @@ def channel_topics(
         number: of its channel.
     """
     return (
-        Publishes(f'{side}image', image, ImageMessage, image_message, queue=QUEUE, latch=True),
+        Publishes(f'{side}image', ImageMessage, image, image_message, queue=QUEUE, latch=True),
         Publishes(
             f'{side}compressed',
-            f'{image}/compressed',
             CompressedMessage,
+            f'{image}/compressed',
             compressed_message,
             queue=QUEUE,
             latch=True,
         ),
-        Publishes(f'{side}camera_info', info, CameraInfoMessage, info_message, queue=QUEUE),
+        Publishes(f'{side}camera_info', CameraInfoMessage, info, info_message, queue=QUEUE),
         Offers(f'{folder}/set_camera_info', set_camera_info(number)),
         Offers(folder, reconfigure),
     )
@@ -185,15 +185,15 @@ def channel_topics(
 _ONE = channel_topics('', '<imageTopicName>', '<cameraInfoTopicName>', '<cameraName>', 0)
 _DEPTH = (
     *_ONE,
-    Publishes('depth', '<depthImageTopicName>', ImageMessage, image_message, queue=QUEUE),
+    Publishes('depth', ImageMessage, '<depthImageTopicName>', image_message, queue=QUEUE),
     Publishes(
         'depth_camera_info',
-        '<depthImageCameraInfoTopicName>',
         CameraInfoMessage,
+        '<depthImageCameraInfoTopicName>',
         info_message,
         queue=QUEUE,
     ),
-    Publishes('points', '<pointCloudTopicName>', PointCloud2, cloud_message, queue=QUEUE),
+    Publishes('points', PointCloud2, '<pointCloudTopicName>', cloud_message, queue=QUEUE),
 )
 _SIDES = 'left', 'right'
 _BOTH = tuple(
@@ -208,7 +208,7 @@ _BOTH = tuple(
     )
 )
 _TRIGGERS = tuple(
-    Subscribes(f'<{side}triggerTopicName>', Empty, 'trigger', lambda _message: ())
+    Subscribes('trigger', Empty, lambda _message: (), f'<{side}triggerTopicName>')
     for side in ('', *(f'{side} ' for side in _SIDES))
 )
 declare_topics(CameraPlugin, *_ONE)

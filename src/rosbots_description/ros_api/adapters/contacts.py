@@ -52,11 +52,5 @@ def _wrench(force: Vector, torque: Vector) -> Wrench:
 
 declare_topics(
     BumperPlugin,
-    Publishes(
-        'contacts',
-        BumperPlugin.topic_names['contacts'],
-        ContactsState,
-        convert=contacts_message,
-        frame='<frameName>',
-    ),
+    Publishes('contacts', ContactsState, convert=contacts_message, frame='<frameName>'),
 )

@@ -62,7 +62,7 @@ class PublishedTopic(Endpoint):
     _serialize: Serializer | None = None
 
     def __init__(self, adapter: Adapter, declared: 'Publishes') -> None:
-        super().__init__(adapter, declared.topic)
+        super().__init__(adapter, declared.topic or adapter.plugin.topic_names[declared.output])
         self.declared = declared
         self.publisher: rospy.Publisher | None = None
         self._output = adapter.plugin.outputs.get(declared.output)
@@ -128,8 +128,8 @@ class Publishes:
     """Publish the readings of an output on a topic, while it has subscribers."""
 
     output: str
-    topic: str
     message: type[Message]
+    topic: str | None = None  # None: the one that the plugin's `topic_names` has for the output
     convert: Callable[[Any], Message] = lambda reading: reading  # reading -> message
     frame: str | None = None  # if given, fill in the header; a name that may contain <tag>
     queue: int = 1
@@ -139,7 +139,7 @@ class Publishes:
     )
     always: bool = False  # advertise even if the description does not request the output
     log: str = ''  # debug message after advertising
-    endpoint: type[PublishedTopic] = PublishedTopic
+    endpoint: type[PublishedTopic] = PublishedTopic  # the class of the topic
 
     def __call__(self, adapter: Adapter) -> PublishedTopic:
         """Return the topic of the adapter's plugin."""
@@ -150,11 +150,11 @@ class Publishes:
 class Subscribes:
     """Call a method of the plugin for each message of a topic, between two steps."""
 
-    topic: str
-    message: type[Message]
     call: str  # the method
+    message: type[Message]
     # Returns the method's arguments; raises ValueError for an invalid message.
     read: Callable[[Message], tuple[Any, ...]]
+    topic: str | None = None  # None: the one that the plugin's `topic_names` has for the method
     queue: int = 1
     log_before: str = ''  # debug message before subscribing
     log: str = ''  # debug message after subscribing
@@ -168,7 +168,7 @@ class SubscribedTopic(Endpoint):
     """A topic that commands a plugin; invalid messages are dropped and change nothing."""
 
     def __init__(self, adapter: Adapter, declared: Subscribes) -> None:
-        super().__init__(adapter, declared.topic)
+        super().__init__(adapter, declared.topic or adapter.plugin.topic_names[declared.call])
         self._declared = declared
         self._last_complaint = -math.inf
 

@@ -98,9 +98,8 @@ class WheelFramesTopic(PublishedTopic):
 
 COMMAND, SIDEWAYS = (
     Subscribes(
-        DiffDrive.topic_names['command'],
-        Twist,
         'command',
+        Twist,
         finite(*fields),
         log_before='Try to subscribe to {}',
         log='Subscribe to {}',
@@ -108,16 +107,12 @@ COMMAND, SIDEWAYS = (
     for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y'))
 )
 ODOMETRY = Publishes(
-    'odometry',
-    DiffDrive.topic_names['odometry'],
-    OdometryMessage,
-    serializer=odometry_serializer,
-    log='Advertise odom on {} ',
+    'odometry', OdometryMessage, serializer=odometry_serializer, log='Advertise odom on {} '
 )
 TRANSFORM = Publishes(
     'odometry_transform',
-    '/tf',
     TFMessage,
+    '/tf',
     serializer=RootedTransformSerializer,
     queue=100,
     always=True,
@@ -125,7 +120,6 @@ TRANSFORM = Publishes(
 WHEELS = (
     Publishes(
         'joint_states',
-        DiffDrive.topic_names['joint_states'],
         JointState,
         serializer=JointStatesSerializer,
         queue=1000,
@@ -134,8 +128,8 @@ WHEELS = (
     ),
     Publishes(
         'wheel_transform',
-        '/tf',
         TFMessage,
+        '/tf',
         serializer=TransformSerializer,
         queue=100,
         endpoint=WheelFramesTopic,

@@ -90,11 +90,11 @@ def pose_between(frame: str, child: str, edges: Parents) -> Pose | None:
     return relative(pose, base) if root == other else None
 
 
-declare_topics(Force, Subscribes(Force.topic_names['command'], Wrench, 'command', read_wrench))
+declare_topics(Force, Subscribes('command', Wrench, read_wrench))
 declare_topics(
     HandOfGod,
     Publishes(
-        'actual', '/tf', TFMessage, serializer=actual_serializer, queue=100, endpoint=ActualTopic
+        'actual', TFMessage, '/tf', serializer=actual_serializer, queue=100, endpoint=ActualTopic
     ),
     FollowedFrame,
 )

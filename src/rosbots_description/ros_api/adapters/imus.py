@@ -61,23 +61,23 @@ def velocity_message(velocity: Vector) -> Vector3Stamped:
     return Vector3Stamped(vector=Vector3(*velocity))
 
 
-IMU = Publishes('imu', LinkImu.topic_names['imu'], Imu, serializer=imu_serializer)
+IMU = Publishes('imu', Imu, serializer=imu_serializer)
 
 declare_topics(ImuSensorPlugin, IMU)
 declare_topics(LinkImu, IMU, Offers('<serviceName>', calibration))
 declare_topics(
     HectorImu,
     IMU,
-    Publishes('bias', '<biasTopicName>', Imu, serializer=imu_serializer),
+    Publishes('bias', Imu, '<biasTopicName>', serializer=imu_serializer),
     Offers('<serviceName>', calibration),
 )
 declare_topics(
     HectorGps,
-    Publishes('fix', '<topicName>', NavSatFix, convert=fix_message, frame='<frameId>', queue=10),
+    Publishes('fix', NavSatFix, '<topicName>', fix_message, frame='<frameId>', queue=10),
     Publishes(
         'velocity',
-        '<velocityTopicName>',
         Vector3Stamped,
+        '<velocityTopicName>',
         convert=velocity_message,
         frame='<frameId>',
         queue=10,

@@ -82,20 +82,12 @@ def ring_cloud_message(cloud: RingCloud) -> PointCloud2:
     )
 
 
+declare_topics(LaserPlugin, Publishes('scan', LaserScan, serializer=scan_serializer))
+declare_topics(RangePlugin, Publishes('range', Range, convert=range_message, frame='<frameName>'))
 declare_topics(
-    LaserPlugin,
-    Publishes('scan', LaserPlugin.topic_names['scan'], LaserScan, serializer=scan_serializer),
-)
-declare_topics(
-    RangePlugin,
-    Publishes(
-        'range', RangePlugin.topic_names['range'], Range, convert=range_message, frame='<frameName>'
-    ),
-)
-declare_topics(
-    BlockLaserPlugin, Publishes('points', '<topicName>', PointCloud, serializer=points_serializer)
+    BlockLaserPlugin, Publishes('points', PointCloud, '<topicName>', serializer=points_serializer)
 )
 declare_topics(
     VelodynePlugin,
-    Publishes('cloud', '<topicName>', PointCloud2, convert=ring_cloud_message, frame='<frameName>'),
+    Publishes('cloud', PointCloud2, '<topicName>', ring_cloud_message, frame='<frameName>'),
 )

@@ -50,26 +50,13 @@ def read_trajectory(message: JointTrajectory) -> tuple[Any, ...]:
 
 
 declare_topics(
-    P3D,
-    Publishes(
-        'odometry',
-        P3D.topic_names['odometry'],
-        Odometry,
-        serializer=true_odometry_serializer,
-        always=True,
-    ),
+    P3D, Publishes('odometry', Odometry, serializer=true_odometry_serializer, always=True)
 )
 declare_topics(
     JointStatePublisher,
-    Publishes(
-        'joint_states',
-        JointStatePublisher.topic_names['joint_states'],
-        JointState,
-        serializer=JointStatesSerializer,
-        queue=1000,
-    ),
+    Publishes('joint_states', JointState, serializer=JointStatesSerializer, queue=1000),
 )
 declare_topics(
     JointPoseTrajectory,
-    Subscribes('<topicName>', JointTrajectory, 'play', read_trajectory, queue=100),
+    Subscribes('play', JointTrajectory, read_trajectory, '<topicName>', queue=100),
 )

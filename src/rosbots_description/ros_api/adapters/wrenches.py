@@ -19,12 +19,5 @@ def wrench_message(reading: JointWrench) -> WrenchStamped:
 
 
 declare_topics(
-    JointWrenchPlugin,
-    Publishes(
-        'wrench',
-        JointWrenchPlugin.topic_names['wrench'],
-        WrenchStamped,
-        convert=wrench_message,
-        frame='<frame>',
-    ),
+    JointWrenchPlugin, Publishes('wrench', WrenchStamped, convert=wrench_message, frame='<frame>')
 )

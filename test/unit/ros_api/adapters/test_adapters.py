@@ -110,14 +110,14 @@ def sonar(monkeypatch):
             Sonar: (
                 Publishes(
                     'range',
-                    'range',
                     Range,
+                    'range',
                     convert=lambda reading: Range(range=reading),
                     frame='<frameName>',
                     queue=3,
                     latch=True,
                 ),
-                Publishes('raw', '<frameName>/raw', Float64, convert=Float64),
+                Publishes('raw', Float64, '<frameName>/raw', convert=Float64),
                 Offers('calibrate', lambda _adapter, name: lambda: closed.append(name)),
             )
         },

@@ -48,7 +48,6 @@ _TOO_LATE = (
 class Acts:
     """An action of a controller."""
 
-    name: str  # in the namespace of the controller
     action: type[Message]
     follow: Callable[[Any, Any], Goal]  # controller, goal message -> followed goal
     cancel: Callable[[Any, Any], None]  # controller, followed goal
@@ -73,7 +72,7 @@ class ActionServer(Endpoint, Hook):
     """Passes goals on to a controller; its state is used on the world's thread only."""
 
     def __init__(self, adapter: Adapter, declared: Acts) -> None:
-        super().__init__(adapter, declared.name)
+        super().__init__(adapter, adapter.plugin.topic_names['follow'])
         self._declared = declared
         self._world = adapter.server.world
         self._goals: dict[str, _Goal] = {}

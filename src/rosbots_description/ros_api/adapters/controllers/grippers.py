@@ -33,11 +33,5 @@ def result(goal: GripperGoal) -> GripperCommandResult:
 
 connects_controller(
     GripperActionController,
-    Acts(
-        GripperActionController.topic_names['follow'],
-        GripperCommandAction,
-        follow,
-        GripperActionController.cancel,
-        result,
-    ),
+    Acts(GripperCommandAction, follow, GripperActionController.cancel, result),
 )

@@ -39,7 +39,7 @@ class SensorTopics(Endpoint):
             declared = (
                 _imu(sensor, frame)
                 if controller.interface == IMU
-                else Publishes(sensor, sensor, WrenchStamped, convert=wrench_message, frame=frame)
+                else Publishes(sensor, WrenchStamped, convert=wrench_message, frame=frame)
             )
             self._topics.append(declared(adapter))
 
@@ -60,7 +60,7 @@ class SensorTopics(Endpoint):
 
 
 def _imu(sensor: str, frame: str) -> Publishes:
-    return Publishes(sensor, sensor, Imu, serializer=lambda _adapter: ImuLayout(frame).pack)
+    return Publishes(sensor, Imu, serializer=lambda _adapter: ImuLayout(frame).pack)
 
 
 connects_controller(SensorController, SensorTopics)

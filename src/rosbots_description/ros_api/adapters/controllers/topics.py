@@ -155,49 +155,24 @@ def offer_settings(adapter: Adapter, name: str) -> Callable[[], None]:
 
 # The argument of `command` is a number, or one for each joint.
 SINGLE, GROUP = (
-    Subscribes('command', kind, 'command', lambda message: (message.data,))
+    Subscribes('command', kind, lambda message: (message.data,))
     for kind in (Float64, Float64MultiArray)
 )
-STATE = Publishes('state', 'state', JointControllerState, convert=pid_state_message, frame='')
+STATE = Publishes('state', JointControllerState, convert=pid_state_message, frame='')
 COMMAND, SIDEWAYS = (
-    Subscribes(DriveController.topic_names['command'], Twist, 'command', finite(*fields))
+    Subscribes('command', Twist, finite(*fields))
     for fields in (('linear.x', 'angular.z'), ('linear.x', 'angular.z', 'linear.y'))
 )
 ODOMETRY = (
-    Publishes(
-        'odometry',
-        DriveController.topic_names['odometry'],
-        Odometry,
-        serializer=odometry_serializer,
-        queue=100,
-    ),
-    Publishes(
-        'odometry_transform',
-        DriveController.topic_names['odometry_transform'],
-        TFMessage,
-        serializer=transform_serializer,
-        queue=100,
-    ),
-    Publishes(
-        'limited_command',
-        DriveController.topic_names['limited_command'],
-        TwistStamped,
-        convert=twist_message,
-        frame='',
-        queue=100,
-    ),
+    Publishes('odometry', Odometry, serializer=odometry_serializer, queue=100),
+    Publishes('odometry_transform', TFMessage, serializer=transform_serializer, queue=100),
+    Publishes('limited_command', TwistStamped, convert=twist_message, frame='', queue=100),
 )
 
 connects_controller(Controller)
 connects_controller(
     JointStateController,
-    Publishes(
-        'joint_states',
-        JointStateController.topic_names['joint_states'],
-        JointState,
-        serializer=JointStatesSerializer,
-        queue=1000,
-    ),
+    Publishes('joint_states', JointState, serializer=JointStatesSerializer, queue=1000),
 )
 connects_controller(JointCommandController, SINGLE)
 connects_controller(JointPositionController, SINGLE, STATE)
@@ -212,7 +187,6 @@ connects_controller(
     Offers('', offer_settings),
     Publishes(
         'wheel_states',
-        DiffDriveController.topic_names['wheel_states'],
         JointTrajectoryControllerState,
         frame='',
         queue=100,
@@ -225,17 +199,7 @@ connects_controller(
     COMMAND,
     *ODOMETRY,
     Subscribes(
-        FourWheelSteeringController.topic_names['steer'],
-        FourWheelSteering,
-        'steer',
-        finite('speed', 'front_steering_angle', 'rear_steering_angle'),
+        'steer', FourWheelSteering, finite('speed', 'front_steering_angle', 'rear_steering_angle')
     ),
-    Publishes(
-        'steering',
-        FourWheelSteeringController.topic_names['steering'],
-        FourWheelSteeringStamped,
-        convert=steering_message,
-        frame='',
-        queue=100,
-    ),
+    Publishes('steering', FourWheelSteeringStamped, convert=steering_message, frame='', queue=100),
 )

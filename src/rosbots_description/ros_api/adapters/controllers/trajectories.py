@@ -43,8 +43,6 @@ from .trajectory_messages import fill_state
 
 logger = logging.getLogger(__name__)
 
-_TOPICS = JointTrajectoryController.topic_names
-
 
 def read_trajectory(message: JointTrajectory) -> Trajectory:
     """Return the trajectory of a message."""
@@ -103,18 +101,14 @@ def offer_query(adapter: Adapter, name: str) -> Callable[[], None]:
 
 connects_controller(
     JointTrajectoryController,
-    Subscribes(
-        _TOPICS['play'], JointTrajectory, 'play', lambda message: (read_trajectory(message),)
-    ),
+    Subscribes('play', JointTrajectory, lambda message: (read_trajectory(message),)),
     Publishes(
         'state',
-        _TOPICS['state'],
         JointTrajectoryControllerState,
         convert=lambda state: fill_state(JointTrajectoryControllerState(), state),
         frame='',
     ),
     Acts(
-        _TOPICS['follow'],
         FollowJointTrajectoryAction,
         follow,
         JointTrajectoryController.cancel,
