@@ -43,18 +43,17 @@ class StaticFrames:
     def watch(self, loop: Loop) -> None:
         """Subscribe to /tf_static."""
         self._watching = True
-        subscriber = rospy.Subscriber(
-            STATIC_TOPIC, TFMessage, lambda message: loop.post(lambda: self._receive(message))
-        )
+
+        def receive(message: TFMessage) -> None:
+            loop.post(lambda: self.add(sender_of(message), message))
+
+        subscriber = rospy.Subscriber(STATIC_TOPIC, TFMessage, receive)
 
         def poll() -> None:
             with contextlib.suppress(rospy.ROSInterruptException):
                 self.retain(publisher_names(subscriber))
 
         loop.every(PERIOD, poll)
-
-    def _receive(self, message: TFMessage) -> None:
-        self.add(sender_of(message), message)
 
     def add(self, node: str, message: TFMessage) -> None:
         """Store the transforms of a node; invalid ones are ignored, as in TF."""

@@ -175,10 +175,7 @@ def test_clouds_are_their_finite_points():
 @pytest.mark.parametrize('name', ['rgb', 'rgba'])
 def test_clouds_have_their_colours(name):
     data = struct.pack('<fff4xI12x', 1.0, 2.0, 3.0, 0x102030)
-    message = PointCloud2(height=1, width=1, point_step=32, row_step=32, data=data)
-    message.fields = [
-        PointField(axis, 4 * i, PointField.FLOAT32, 1) for i, axis in enumerate('xyz')
-    ]
+    message = cloud(np.zeros((1, 1, 3)), point_step=32, row_step=32, data=data)
     message.fields.append(PointField(name, 16, PointField.FLOAT32, 1))
     reading = shown_reading(message)
     assert reading.points.tolist() == [[1, 2, 3]]

@@ -11,7 +11,10 @@ from rosbots_description.ros_api.node.world_loading import own_worlds, read_worl
 from rosbots_description.sim.core import reporting_to
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 
-EMPTY = '<sdf version="1.6"><world name="{}"/></sdf>'
+WORLD = '<sdf version="1.6"><world name="{}">{}</world></sdf>'
+DOOR = (
+    '<sdf version="1.6"><model name="door"><static>true</static><link name="leaf"/></model></sdf>'
+)
 
 
 @pytest.fixture(autouse=True)
@@ -78,13 +81,13 @@ def test_our_own_worlds_are_found_without_a_ros_package(tmp_path, monkeypatch, p
 
 
 def test_a_path_is_used_as_given(tmp_path):
-    write(tmp_path / 'mine.world', EMPTY.format('mine'))
+    write(tmp_path / 'mine.world', WORLD.format('mine', ''))
     assert read_world(str(tmp_path / 'mine.world')).name == 'mine'
     assert read_world('mine.world').name == 'mine'
 
 
 def test_the_resource_path_comes_before_our_own_worlds(tmp_path, monkeypatch):
-    write(tmp_path / 'share' / 'worlds' / 'empty.world', EMPTY.format('theirs'))
+    write(tmp_path / 'share' / 'worlds' / 'empty.world', WORLD.format('theirs', ''))
     monkeypatch.setenv('GAZEBO_RESOURCE_PATH', f'/nowhere::{tmp_path}/share')
     assert read_world('worlds/empty.world').name == 'theirs'
 
@@ -92,16 +95,9 @@ def test_the_resource_path_comes_before_our_own_worlds(tmp_path, monkeypatch):
 def test_exported_worlds_and_models_of_packages_are_found(tmp_path, places):
     folder = tmp_path / 'packages' / 'houses'
     exporting(folder, 'gazebo_media_path="${prefix}" gazebo_model_path="${prefix}/models"')
-    write(
-        folder / 'worlds' / 'house.world',
-        '<sdf version="1.6"><world name="house"><include>'
-        '<uri>model://door</uri></include></world></sdf>',
-    )
-    write(
-        folder / 'models' / 'door' / 'model.sdf',
-        '<sdf version="1.6"><model name="door">'
-        '<static>true</static><link name="leaf"/></model></sdf>',
-    )
+    include = '<include><uri>model://door</uri></include>'
+    write(folder / 'worlds' / 'house.world', WORLD.format('house', include))
+    write(folder / 'models' / 'door' / 'model.sdf', DOOR)
     places(folder)
     world = read_world('worlds/house.world')
     assert [model.name for model, _ in world.models] == ['door']
@@ -110,21 +106,13 @@ def test_exported_worlds_and_models_of_packages_are_found(tmp_path, places):
 def test_files_of_packages_are_found_along_the_exported_media_path(tmp_path, places):
     folder = tmp_path / 'packages' / 'shops'
     exporting(folder, 'gazebo_media_path="${prefix}"')
-    write(
-        folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3'
-    )
-    write(
-        folder / 'worlds' / 'shop.world',
-        """<sdf version="1.6"><world name="shop">
-      <model name="shelf"><link name="l"><visual name="v"><geometry><mesh>
-      <uri>file://models/shelf/meshes/shelf.obj</uri></mesh></geometry></visual></link></model>
-      </world></sdf>""",
-    )
+    mesh = write(folder / 'models' / 'shelf.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3')
+    shelf = """<model name="shelf"><link name="l"><visual name="v"><geometry><mesh>
+      <uri>file://models/shelf.obj</uri></mesh></geometry></visual></link></model>"""
+    write(folder / 'worlds' / 'shop.world', WORLD.format('shop', shelf))
     places(folder)
     ((shelf, _),) = read_world('worlds/shop.world').models
-    assert shelf.links[0].visuals[0].geometry.path == str(
-        folder / 'models' / 'shelf' / 'meshes' / 'shelf.obj'
-    )
+    assert shelf.links[0].visuals[0].geometry.path == str(mesh)
     assert shelf.left_out == ()
 
 
@@ -156,11 +144,7 @@ def test_unreadable_manifest_is_one_error_message(tmp_path, places, text):
 
 def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):
     monkeypatch.setenv('HOME', str(tmp_path))
-    write(
-        tmp_path / '.gazebo' / 'models' / 'door' / 'model.sdf',
-        '<sdf version="1.6">'
-        '<model name="door"><static>true</static><link name="leaf"/></model></sdf>',
-    )
+    write(tmp_path / '.gazebo' / 'models' / 'door' / 'model.sdf', DOOR)
     assert packages.find_model('door') == str(tmp_path / '.gazebo' / 'models' / 'door')
 
 
@@ -193,11 +177,8 @@ def test_error_about_an_invalid_world_names_its_file(tmp_path, text, message):
 
 
 def test_messages_while_reading_are_kept_for_the_node(tmp_path, caplog):
-    path = write(
-        tmp_path / 'w.world',
-        '<sdf version="1.6"><world name="w"><include>'
-        '<uri>model://nowhere</uri></include></world></sdf>',
-    )
+    include = '<include><uri>model://nowhere</uri></include>'
+    path = write(tmp_path / 'w.world', WORLD.format('w', include))
     faults = []
     with reporting_to(faults.append):
         read_world(str(path))

@@ -62,9 +62,13 @@ def test_transforms_of_an_ended_node_are_forgotten(frames):
     assert set(frames.parents) == {'camera'}
 
 
-def test_transform_that_is_not_finite_is_left_out(frames):
-    frames.add('/rsp', transforms(('a', 'b', Pose((math.nan, 0.0, 0.0)))))
-    assert not frames.parents
+@pytest.mark.parametrize(
+    'pose', [Pose((math.nan, 0.0, 0.0)), Pose(orientation=(0.0, 0.0, 0.0, math.inf))]
+)
+def test_transform_that_is_not_finite_is_left_out(frames, pose):
+    before = Pose((1.0, 0.0, 0.0))
+    frames.add('/rsp', transforms(('a', 'b', before), ('a', 'b', pose)))
+    assert frames.parents == {'b': ('a', before)}
 
 
 @pytest.mark.parametrize(
