@@ -26,15 +26,15 @@ CLOCK = "return document.querySelector('.clock b')?.textContent ?? ''"
 UNTIDY = 'Tried to update non-existent component'  # of what was removed in the same frame
 # [ms] before each frame: pages that draw all the time, in software, would keep the processors busy.
 PAUSE = 500
-# Frames come seldom, and the scene is drawn in them only while somebody looks: see `picture`.
+# Frames come seldom, and the scene is drawn only in that at which somebody looks: see `picture`.
+# So are the maps of shadows, which three.js draws anew for each frame.
 DRAW_SELDOM = """
 for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced',
                     'drawElementsInstanced']) {
   const draw = WebGL2RenderingContext.prototype[name];
   WebGL2RenderingContext.prototype[name] = function (...numbers) {
-    const isScene = !this.getParameter(this.FRAMEBUFFER_BINDING);
-    if (isScene && !window.isLookedAt) return;
-    window.isDrawn ||= isScene;
+    if (!window.isLookedAt) return;
+    window.isDrawn ||= !this.getParameter(this.FRAMEBUFFER_BINDING);
     draw.apply(this, numbers);
   };
 }
@@ -57,7 +57,11 @@ HOPELESS = 180.0  # [s, wall] for a frame that is drawn in software, beside othe
 # Ends when the scene, and then the page around it, has been drawn.
 LOOK = """
 const done = arguments[0];
-const look = () => window.isDrawn ? requestAnimationFrame(done) : setTimeout(look, 10);
+const look = () => {
+  if (!window.isDrawn) return setTimeout(look, 10);
+  window.isLookedAt = false;
+  requestAnimationFrame(done);
+};
 [window.isLookedAt, window.isDrawn] = [true, false];
 look();
 """
@@ -99,7 +103,6 @@ def picture(driver: webdriver.Chrome) -> Image.Image:
     """
     driver.execute_async_script(LOOK)
     answer = driver.execute_cdp_cmd('Page.captureScreenshot', {})
-    driver.execute_script('window.isLookedAt = false')
     return Image.open(io.BytesIO(base64.b64decode(answer['data'])))
 
 
