@@ -78,9 +78,7 @@ class BrowserPanels(Panel):
             if tabs.edit is not None:
                 self._add_editing(tabs.edit)
             with tabs.show:
-                self._show = ShowPanel(
-                    client, *self._selected, shared.lock, shared.site.allow_viewers
-                )
+                self._show = ShowPanel(client, self.selection, shared.site.allow_viewers)
         self._panels.append(self._show)
         _detach(client)
         self.refresh()
@@ -114,19 +112,15 @@ class BrowserPanels(Panel):
         for panel in self._panels:
             panel.close()
 
-    @property
-    def _selected(self) -> tuple[Models, Selection]:
-        return self._shared.models, self.selection
-
     def _add_views(self, order: float) -> None:
         client, shared = self._client, self._shared
         allow = shared.site.allow_viewers
         nothing = client.gui.add_command('Select nothing', hotkey='escape')
         nothing.on_trigger(lambda _: self.selection.choose(None))
         allow(nothing)
-        self._views = ViewPanel(client, *self._selected, shared.start, order, allow)
-        self._outline = Outline(client, *self._selected)
-        self._panels += [self._outline, FollowPanel(client, *self._selected, order, allow)]
+        self._views = ViewPanel(client, self.selection, shared.start, order, allow)
+        self._outline = Outline(client, self.selection)
+        self._panels += [self._outline, FollowPanel(client, self.selection, order, allow)]
 
     def _add_driving(self, tab: Tab) -> None:
         client, shared, polled = self._client, self._shared, self._shared.polled
@@ -158,21 +152,19 @@ class BrowserPanels(Panel):
         with tab:
             if inspection is not None:
                 self._panels += [
-                    Inspector(client.gui, shared.polled, *self._selected, shared.lock),
+                    Inspector(client.gui, shared.polled, self.selection),
                     ChangePanel(
-                        client.gui, inspection, *self._selected, shared.history, self._notify
+                        client.gui, inspection, self.selection, shared.history, self._notify
                     ),
                 ]
-            self._panels.append(
-                ModelTree(client, *self._selected, shared.lock, shared.site.allow_viewers)
-            )
+            self._panels.append(ModelTree(client, self.selection, shared.site.allow_viewers))
 
     def _add_editing(self, tab: Tab) -> None:
         client, shared = self._client, self._shared
         editor, library = shared.simulator.editor, shared.simulator.library
         assert editor is not None
         with tab:
-            EditorPanel(client.gui, *self._selected, editor, shared.history, self._notify)
+            EditorPanel(client.gui, self.selection, editor, shared.history, self._notify)
             if library is not None:
                 self._panels.append(
                     InsertPanel(
@@ -189,14 +181,7 @@ class BrowserPanels(Panel):
                 )
         if shared.site.may_control(client):
             self._panels.append(
-                Gizmo(
-                    client,
-                    *self._selected,
-                    editor,
-                    shared.drags,
-                    shared.history,
-                    self._notify,
-                )
+                Gizmo(client, self.selection, editor, shared.drags, shared.history, self._notify)
             )
 
 

@@ -11,7 +11,6 @@ from ..sim.description import SceneChange, ShownLink, ShownModel
 from .descriptions import chosen_links, friction, scoped_name
 from .history import History
 from .inspector import States
-from .models import Models
 from .panel import Panel, Value, attempt, fill
 from .selection import Selection
 
@@ -42,13 +41,12 @@ class ChangePanel(Panel):
         self,
         gui: viser.GuiApi,
         inspection: Inspection,
-        models: Models,
         selection: Selection,
         history: History,
         complain: Callable[[str], None],
     ) -> None:
-        self._inspection, self._history, self._complain = inspection, history, complain
-        self._models, self._selection = models, selection
+        self._inspection, self._selection = inspection, selection
+        self._history, self._complain = history, complain
         self._properties: dict[str, object] = {}  # by fields, as last filled in or set
         self._folder = gui.add_folder('Change', expand_by_default=False, visible=False)
         with self._folder:
@@ -76,42 +74,41 @@ class ChangePanel(Panel):
 
     def apply(self, change: SceneChange) -> None:
         """Show new properties of what is selected."""
-        if any(model.name == self._selection.model for model in change.models):
-            self._fill_properties()
+        model = self._selection.shown
+        if model is not None and self._selection.is_in(change):
+            self._fill_properties(model)
 
     def _button(
         self, gui: viser.GuiApi, label: str, command: Callable[[ShownModel, str | None], None]
     ) -> None:
         def act() -> None:
             with self._history.turn:
-                model = self._models.all.get(self._selection.model or '')
+                model = self._selection.shown
                 if model is not None:
                     command(model, self._selection.link)
 
         gui.add_button(label).on_click(lambda _: attempt(act, self._complain))
 
     def _select(self) -> None:
-        model, link = self._selection.model, self._selection.link
+        model = self._selection.shown
         self._folder.visible = model is not None
         if model is not None:
-            pose = self._models.pose(model, link)
+            pose = self._selection.models.pose(model.name, self._selection.link)
             fill(self._position, pose.position)
             fill(self._angles, to_rpy(pose.orientation))
             fill(self._linear, NONE)
             fill(self._angular, NONE)
             self._properties.clear()
-            self._fill_properties()
+            self._fill_properties(model)
 
-    def _fill_properties(self) -> None:
-        assert self._selection.model is not None
-        model, link = self._models.all[self._selection.model], self._selection.link
-        body = _only_link(model, link)
+    def _fill_properties(self, model: ShownModel) -> None:
+        body = _only_link(model, self._selection.link)
         self._motion.visible = not model.static
         self._body.visible = body is not None and not model.static
         if body is not None and body.inertial is not None:
             self._fill(self._mass, float(body.inertial.mass))
             self._fill(self._gravity, body.gravity)
-        pairs = friction(chosen_links(model, link))
+        pairs = friction(self._selection.links)
         self._surface.visible = bool(pairs)
         if pairs:
             for field, value in zip((self._mu, self._mu2), min(pairs), strict=True):

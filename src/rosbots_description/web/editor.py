@@ -10,7 +10,6 @@ from ..sim.core import Pose, SimError, Vector
 from ..sim.description import ModelText
 from .descriptions import scoped_name
 from .history import History
-from .models import Models
 from .panel import Panel, attempt
 from .selection import Selection
 from .text import Words
@@ -63,13 +62,12 @@ class EditorPanel(Panel):
     def __init__(
         self,
         gui: viser.GuiApi,
-        models: Models,
         selection: Selection,
         editor: Editor,
         history: History,
         complain: Callable[[str], None],
     ) -> None:
-        self._models, self._selection, self._editor = models, selection, editor
+        self._selection, self._editor = selection, editor
         self._history, self._complain = history, complain
         self._title = Words(gui, HINT)
         duplicate = gui.add_button('Duplicate', icon=viser.Icon.COPY, hint='Shift-D')
@@ -105,7 +103,7 @@ class EditorPanel(Panel):
 
     def _link_of(self, model: str) -> str:
         """Return the scoped name of the selected link, else of the canonical one."""
-        shown = self._models.all.get(model)
+        shown = self._selection.models.all.get(model)
         if shown is None:
             raise SimError(f"model '{model}' does not exist any more")
         return scoped_name(model, self._selection.link or shown.links[0].name)

@@ -4,7 +4,6 @@ import numpy as np
 import viser
 
 from ..sim.description import ShownMotion
-from .models import Models
 from .panel import Panel
 from .selection import Selection
 from .site import Allow
@@ -23,12 +22,11 @@ class FollowPanel(Panel):
     def __init__(
         self,
         client: viser.ClientHandle,
-        models: Models,
         selection: Selection,
         order: float,
         allow_viewers: Allow,
     ) -> None:
-        self._client, self._models, self._selection = client, models, selection
+        self._client, self._selection = client, selection
         self._followed: str | None = None
         self._at = np.full(3, np.inf)  # where the camera looks [m]
         self._follows = False
@@ -45,7 +43,7 @@ class FollowPanel(Panel):
             self._followed, self._at = model, np.full(3, np.inf)
         if model is None:
             return
-        at = np.array(self._models.pose(model).position)
+        at = np.array(self._selection.models.pose(model).position)
         if np.linalg.norm(at - self._at) > MOVED:
             self._at = at
             with self._client.atomic():

@@ -11,7 +11,6 @@ from ..sim.core import Pose
 from ..sim.description import SceneChange, ShownMotion
 from .editor import Editor
 from .history import History
-from .models import Models
 from .nodes import place, pose_of, wxyz
 from .panel import Panel, attempt
 from .selection import Selection
@@ -99,7 +98,6 @@ class Gizmo(Panel):
     def __init__(
         self,
         client: viser.ClientHandle,
-        models: Models,
         selection: Selection,
         editor: Editor,
         drags: Drags,
@@ -107,7 +105,7 @@ class Gizmo(Panel):
         complain: Callable[[str], None],
     ) -> None:
         self._drags = drags
-        self._client, self._models, self._selection = client, models, selection
+        self._client, self._models, self._selection = client, selection.models, selection
         self._editor, self._history, self._complain = editor, history, complain
         self._lock = threading.Lock()  # of the drag
         self._drag: Drag | None = None

@@ -1,6 +1,5 @@
 """What is selected, in numbers, for as long as it is."""
 
-import threading
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -9,7 +8,6 @@ import viser
 from ..sim.core import Pose, SimError, Twist
 from ..sim.description import SceneChange, ShownModel
 from .descriptions import parts_html, state_html
-from .models import Models
 from .panel import Panel
 from .selection import Selection
 from .text import Words
@@ -42,15 +40,8 @@ class States(Protocol):
 class Inspector(Panel):
     """A table of the state, and lists of joints, collisions and sensors."""
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        states: States,
-        models: Models,
-        selection: Selection,
-        lock: threading.RLock,
-    ) -> None:
-        self._states, self._models, self._selection, self._lock = states, models, selection, lock
+    def __init__(self, gui: viser.GuiApi, states: States, selection: Selection) -> None:
+        self._states, self._selection = states, selection
         self._nothing = Words(gui, 'Click on a model in the scene or below.')
         self._examined: ShownModel | None = None  # the model whose omissions are known
         self._omissions: Sequence[str] = ()
@@ -60,39 +51,36 @@ class Inspector(Panel):
 
     def apply(self, change: SceneChange) -> None:
         """Show new properties of what is selected."""
-        if any(model.name == self._selection.model for model in change.models):
+        if self._selection.is_in(change):
             self._select()
 
     def refresh(self) -> None:
         """Show the state of what is selected."""
-        model, link = self._selection.model, self._selection.link
+        model, link = self._selection.shown, self._selection.link
         if model is None:
             return
-        shown = self._models.all.get(model)
         try:
-            pose, twist = self._states.state(model, link, SOON)
-            if shown is not self._examined:
-                omissions = self._states.omissions(model)
+            pose, twist = self._states.state(model.name, link, SOON)
+            if model is not self._examined:
+                omissions = self._states.omissions(model.name)
         except SimError:
             return  # it went, or the simulator did, which others say
-        with self._lock:
-            if (model, link) == (self._selection.model, self._selection.link):
-                self._state.content = state_html(self._models.all[model], link, pose, twist)
-                if shown is not self._examined:
-                    self._examined, self._omissions = shown, omissions
+        with self._selection.lock:
+            if model is self._selection.shown and link == self._selection.link:
+                self._state.content = state_html(model, link, pose, twist)
+                if model is not self._examined:
+                    self._examined, self._omissions = model, omissions
                     self._show_parts(model, link)
 
     def _select(self) -> None:
-        name, link = self._selection.model, self._selection.link
-        self._nothing.visible = name is None
-        self._state.visible = self._parts.visible = name is not None
-        if name is not None:
-            pose = self._models.pose(name, link)
-            self._state.content = state_html(self._models.all[name], link, pose, None)
-            self._show_parts(name, link)
+        model, link = self._selection.shown, self._selection.link
+        self._nothing.visible = model is None
+        self._state.visible = self._parts.visible = model is not None
+        if model is not None:
+            pose = self._selection.models.pose(model.name, link)
+            self._state.content = state_html(model, link, pose, None)
+            self._show_parts(model, link)
 
-    def _show_parts(self, name: str, link: str | None) -> None:
-        model = self._models.all[name]
-        self._parts.content = parts_html(
-            model, link, self._omissions if model is self._examined else ()
-        )
+    def _show_parts(self, model: ShownModel, link: str | None) -> None:
+        omissions = self._omissions if model is self._examined else ()
+        self._parts.content = parts_html(model, link, omissions)

@@ -5,8 +5,6 @@ import viser
 
 from ..sim.description import SceneChange, ShownLink
 from .bounds import corners
-from .descriptions import chosen_links
-from .models import Models
 from .nodes import link_node
 from .panel import Panel
 from .selection import Selection
@@ -30,14 +28,14 @@ EDGES = np.array(
 class Outline(Panel):
     """Shows a box around each selected link; it moves along as a part of the link's node."""
 
-    def __init__(self, client: viser.ClientHandle, models: Models, selection: Selection) -> None:
-        self._scene, self._models, self._selection = client.scene, models, selection
+    def __init__(self, client: viser.ClientHandle, selection: Selection) -> None:
+        self._scene, self._selection = client.scene, selection
         self._shown: list[str] = []
         selection.on_change(self.draw)
 
     def apply(self, change: SceneChange) -> None:
         """Draw it again around a model that has changed."""
-        if any(model.name == self._selection.model for model in change.models):
+        if self._selection.is_in(change):
             self.draw()
 
     def draw(self) -> None:
@@ -45,10 +43,9 @@ class Outline(Panel):
         for name in self._shown:
             self._scene.remove_by_name(name)  # unless it went with its link
         self._shown = []
-        model, chosen = self._selection.model, self._selection.link
-        if model is not None:
-            for link in chosen_links(self._models.all[model], chosen)[:MOST]:
-                self._add(f'{link_node(model, link.name)}/selected', link)
+        if self._selection.model is not None:
+            for link in self._selection.links[:MOST]:
+                self._add(f'{link_node(self._selection.model, link.name)}/selected', link)
 
     def _add(self, name: str, link: ShownLink) -> None:
         points = corners(link.visuals)

@@ -3,7 +3,8 @@
 import threading
 from collections.abc import Callable
 
-from ..sim.description import SceneChange
+from ..sim.description import SceneChange, ShownLink, ShownModel
+from .descriptions import chosen_links
 from .models import Models
 from .panel import Panel
 
@@ -16,7 +17,7 @@ class Selection(Panel):
     """
 
     def __init__(self, models: Models, lock: threading.RLock) -> None:
-        self._models, self._lock = models, lock
+        self.models, self.lock = models, lock
         self._chosen: tuple[str | None, str | None] = (None, None)
         self._expected: str | None = None  # a model that is to be selected when it comes
         self._callbacks: list[Callable[[], None]] = []
@@ -31,13 +32,28 @@ class Selection(Panel):
         """Return the name of the selected link in that model; None for the whole model."""
         return self._chosen[1]
 
+    @property
+    def shown(self) -> ShownModel | None:
+        """Return the selected model as it is shown, or None."""
+        return self.models.all.get(self.model or '')
+
+    @property
+    def links(self) -> list[ShownLink]:
+        """Return the selected link, or all links of the selected model."""
+        model = self.shown
+        return chosen_links(model, self.link) if model else []
+
+    def is_in(self, change: SceneChange) -> bool:
+        """Tell whether a change shows the selected model anew."""
+        return any(model.name == self.model for model in change.models)
+
     def choose(self, model: str | None, link: str | None = None) -> None:
         """Select a model, one of its links, or nothing; what does not exist counts as nothing."""
-        with self._lock:
+        with self.lock:
             self._expected = None
-            if model not in self._models.all:
+            if model not in self.models.all:
                 model = None
-            if model is None or link is None or self._models.link(model, link) is None:
+            if model is None or link is None or self.models.link(model, link) is None:
                 link = None
             if (model, link) != self._chosen:
                 self._chosen = model, link
@@ -46,8 +62,8 @@ class Selection(Panel):
 
     def expect(self, model: str) -> None:
         """Select a model as soon as the simulator shows it, unless something else is chosen."""
-        with self._lock:
-            if model in self._models.all:
+        with self.lock:
+            if model in self.models.all:
                 self.choose(model)
             else:
                 self._expected = model

@@ -7,7 +7,6 @@ import viser
 from ..sim.description import SceneChange, ShownModel
 from ..sim.rendering import Look
 from .markers import MARKERS
-from .models import Models
 from .nodes import link_node
 from .panel import Panel
 from .scene import SceneView
@@ -32,12 +31,10 @@ class ShowPanel(Panel):
     def __init__(
         self,
         client: viser.ClientHandle,
-        models: Models,
         selection: Selection,
-        lock: threading.RLock,
         allow_viewers: Allow,
     ) -> None:
-        self._client, self._models, self._selection, self._lock = client, models, selection, lock
+        self._client, self._selection = client, selection
         self._shown: dict[str, list[str]] = {}  # nodes, by models
         gui = client.gui
         self._only = gui.add_checkbox('Only of what is selected', False)
@@ -60,8 +57,8 @@ class ShowPanel(Panel):
 
     def draw(self) -> None:
         """Show what is checked, and nothing else."""
-        with self._lock, self._client.atomic():
-            for model in self._models.all.values():
+        with self._selection.lock, self._client.atomic():
+            for model in self._selection.models.all.values():
                 self._draw(model)
 
     def _draw(self, model: ShownModel) -> None:

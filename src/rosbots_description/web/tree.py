@@ -1,13 +1,11 @@
 """The models in the world, and the links of the selected one: what is clicked on is selected."""
 
-import threading
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import viser
 
 from ..sim.description import SceneChange
-from .models import Models
 from .panel import Panel
 from .selection import Selection
 from .site import Allow
@@ -32,15 +30,9 @@ class ModelTree(Panel):
     """A button for each model, and below the selected one a button for each of its links."""
 
     def __init__(
-        self,
-        client: viser.ClientHandle,
-        models: Models,
-        selection: Selection,
-        lock: threading.RLock,
-        allow_viewers: Allow,
+        self, client: viser.ClientHandle, selection: Selection, allow_viewers: Allow
     ) -> None:
-        self._client, self._models, self._selection, self._lock = client, models, selection, lock
-        self._allow_viewers = allow_viewers
+        self._client, self._selection, self._allow_viewers = client, selection, allow_viewers
         gui = client.gui
         self._rows: dict[TreeRow, viser.GuiButtonHandle] = {}
         # Used again: if a button is changed and removed between two frames of a browser, viser's
@@ -59,7 +51,7 @@ class ModelTree(Panel):
         self._draw()
 
     def _draw(self) -> None:
-        with self._lock:
+        with self._selection.lock:
             wanted = list(self._wanted())
             for row in self._rows.keys() - set(wanted[:MOST]):
                 button = self._rows.pop(row)
@@ -91,18 +83,18 @@ class ModelTree(Panel):
     def _wanted(self) -> Iterator[TreeRow]:
         """Return the rows that have what is looked for in their names, the selected model first."""
         part = self._find.value.lower()
-        selected = self._selection.model
-        for name in sorted(self._models.all, key=lambda name: name != selected):
+        models, selected = self._selection.models.all, self._selection.model
+        for name in sorted(models, key=lambda name: name != selected):
             matches = part in name.lower()
             if matches or name == selected:
                 yield TreeRow(name, None)
             if name == selected:
-                for link in self._models.all[name].links:
+                for link in models[name].links:
                     if matches or part in link.name.lower():
                         yield TreeRow(name, link.name)
 
     def _choose(self, event: viser.GuiEvent[viser.GuiButtonHandle]) -> None:
-        with self._lock:
+        with self._selection.lock:
             row = next((row for row, button in self._rows.items() if button is event.target), None)
             if row is not None:
                 self._selection.choose(*row)

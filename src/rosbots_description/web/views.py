@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -13,8 +13,6 @@ from viser import Icon
 from ..sim.core import Vector, as_vector
 from ..sim.description import ShownLink
 from .bounds import corners
-from .descriptions import chosen_links
-from .models import Models
 from .panel import Panel
 from .selection import Selection
 from .site import Allow
@@ -33,36 +31,19 @@ class ViewPanel(Panel):
     def __init__(
         self,
         client: viser.ClientHandle,
-        models: Models,
         selection: Selection,
         start: StartView,
         order: float,
         allow_viewers: Allow,
     ) -> None:
-        self._camera, self._models, self._selection = client.camera, models, selection
+        self._camera, self._selection = client.camera, selection
         self._clicked = ('', -math.inf)  # last: model, and when [s, monotonic]
         looks: dict[str, tuple[viser.IconName, str, Callable[[viser.CameraHandle], None]]] = {
             'Home': (Icon.HOME, 'H', lambda camera: look(camera, *start.choose(camera.aspect))),
-            'Top': (
-                Icon.BOX_ALIGN_TOP,
-                'T',
-                lambda camera: self._fit(camera, self._everything(), TOP),
-            ),
-            'Front': (
-                Icon.BOX_ALIGN_BOTTOM,
-                'F',
-                lambda camera: self._fit(camera, self._everything(), FRONT),
-            ),
-            'Fit all': (
-                Icon.ARROWS_MAXIMIZE,
-                'X',
-                lambda camera: self._fit(camera, self._everything()),
-            ),
-            'Go to selection': (
-                Icon.FOCUS_2,
-                'G',
-                lambda camera: self._fit(camera, self._chosen()),
-            ),
+            'Top': (Icon.BOX_ALIGN_TOP, 'T', partial(self._fit, self._all_links, TOP)),
+            'Front': (Icon.BOX_ALIGN_BOTTOM, 'F', partial(self._fit, self._all_links, FRONT)),
+            'Fit all': (Icon.ARROWS_MAXIMIZE, 'X', partial(self._fit, self._all_links, None)),
+            'Go to selection': (Icon.FOCUS_2, 'G', self._go_to_selection),
         }
         for name, (icon, key, turn) in looks.items():
             button = client.gui.add_button(name, icon=icon, order=order)
@@ -77,29 +58,25 @@ class ViewPanel(Panel):
         self._clicked = model, time.monotonic()
         if last == model and self._clicked[1] - moment < DOUBLE:
             with self._camera.client.atomic():
-                self._fit(self._camera, self._chosen())
+                self._go_to_selection(self._camera)
         else:
             self._selection.click(model, link)
 
-    def _everything(self) -> list[Vector]:
-        return self._corners(link for model in self._models.all.values() for link in model.links)
+    def _all_links(self) -> list[ShownLink]:
+        return [link for model in self._selection.models.all.values() for link in model.links]
 
-    def _chosen(self) -> list[Vector]:
-        model = self._models.all.get(self._selection.model or '')
-        return self._corners(chosen_links(model, self._selection.link)) if model else []
+    def _go_to_selection(self, camera: viser.CameraHandle) -> None:
+        self._fit(lambda: self._selection.links, None, camera)
 
-    def _corners(self, links: Iterable[ShownLink]) -> list[Vector]:
-        return [
-            corner
-            for link in links
-            for corner in corners(link.visuals, self._models.link_pose(link))
-        ]
-
-    @staticmethod
     def _fit(
-        camera: viser.CameraHandle, points: list[Vector], direction: Vector | None = None
+        self,
+        links: Callable[[], list[ShownLink]],
+        direction: Vector | None,
+        camera: viser.CameraHandle,
     ) -> None:
-        """Look at points from a direction, by default the present one; not at nothing."""
+        """Look at links from a direction, None for the present one; not at nothing."""
+        pose = self._selection.models.link_pose
+        points = [corner for link in links() for corner in corners(link.visuals, pose(link))]
         if not points:
             return
         low, high = np.min(points, axis=0), np.max(points, axis=0)
