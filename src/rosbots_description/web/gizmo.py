@@ -32,13 +32,14 @@ class Drag:
         model: str,
         pose: Pose,
         editor: Editor,
+        history: History,
         complain: Callable[[str], None],
         ended: Callable[['Drag'], None],
     ) -> None:
         """Begin; `ended` is called at the end."""
-        self.model, self.start, self.pose = model, pose, pose
-        self.is_done = False  # whether the model was moved to the last pose
-        self._editor, self._complain, self._ended = editor, complain, ended
+        self.model, self.pose, self._start = model, pose, pose
+        self._editor, self._history = editor, history
+        self._complain, self._ended = complain, ended
         self._released = threading.Event()
         self._is_taken_over = False
         threading.Thread(target=self._run, daemon=True).start()
@@ -62,12 +63,27 @@ class Drag:
         self._ended(self)
 
     def _follow(self) -> None:
-        while not self.is_done:
-            last = self._released.wait(PERIOD)
+        turn = self._history.turn
+        while not (self._released.wait(PERIOD) and turn.acquire(timeout=PERIOD)):
             if self._is_taken_over:
                 return
-            self._editor.hold(self.model, self.pose, 0.0 if last else HOLD)
-            self.is_done = last
+            self._editor.hold(self.model, self.pose, HOLD)
+        try:
+            if not self._is_taken_over:
+                self._move(self.pose)
+        finally:
+            turn.release()
+
+    def _move(self, pose: Pose) -> None:
+        """Let the model go at its last pose, and remember the move if it is one."""
+        self._editor.hold(self.model, pose, 0.0)
+        before = self._start
+        if not np.allclose(
+            [*pose.position, *pose.orientation], [*before.position, *before.orientation]
+        ):
+            self._history.add(
+                f"move '{self.model}'", partial(self._editor.move, self.model, before)
+            )
 
 
 class Drags:
@@ -173,7 +189,12 @@ class Gizmo(Panel):
             is_free = self._drag is None or self._drag.is_released
             if is_free and self._model is not None and event.target is self._handle:
                 self._drag = Drag(
-                    self._model, pose_of(event.target), self._editor, self._complain, self._end
+                    self._model,
+                    pose_of(event.target),
+                    self._editor,
+                    self._history,
+                    self._complain,
+                    self._end,
                 )
                 self._drags.add(self._drag)
 
@@ -183,15 +204,7 @@ class Gizmo(Panel):
                 self._drag.release()
 
     def _end(self, drag: Drag) -> None:
-        """Remember the move; called when the last command was answered."""
         self._drags.remove(drag)
         with self._lock:
             if self._drag is drag:
                 self._drag = None
-        if drag.is_done and not np.allclose(
-            [*drag.pose.position, *drag.pose.orientation],
-            [*drag.start.position, *drag.start.orientation],
-        ):
-            self._history.add(
-                f"move '{drag.model}'", partial(self._editor.move, drag.model, drag.start)
-            )

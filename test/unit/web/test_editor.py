@@ -117,6 +117,26 @@ def test_dragged_model_is_held_until_it_is_let_go(chosen, simulator):
     chosen.wait_until(lambda: moves(simulator)[-1] == (1.0, 0.0, 0.0))
 
 
+def test_undo_waits_until_a_dragged_model_is_let_go(chosen, simulator, monkeypatch):
+    placed, answer = threading.Event(), threading.Event()
+
+    def hold(*arguments):
+        if arguments[-1] == 0.0:
+            placed.set()
+            answer.wait(60.0)
+        simulator.told.append(('hold', *arguments))
+
+    monkeypatch.setattr(simulator, 'hold', hold, raising=False)
+    chosen.grab(NODE)
+    chosen.drag(NODE, [1.0, 2.0, 3.0])
+    chosen.let_go(NODE)
+    chosen.wait_until(placed.is_set)
+    chosen.press('Z')
+    chosen.read(0.2)  # it can only wait
+    answer.set()
+    chosen.wait_until(lambda: simulator.told[-1] == ('move', 'a', Pose((1.0, 0.0, 0.0))))
+
+
 def test_what_was_only_grabbed_has_not_moved(chosen, simulator):
     chosen.grab(NODE)
     chosen.let_go(NODE)
