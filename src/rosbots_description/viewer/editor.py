@@ -11,7 +11,6 @@ from ..sim.physics import CrashSandbox
 from ..sim.placement import box_around, free_name, placed
 from ..sim.resources import own_name, root_tag
 from .commands import WorldCommands
-from .inspection import omissions
 
 PATIENCE = 60.0  # [s, wall] for large meshes
 _BLANK = '\ufeff \t\r\n'
@@ -71,10 +70,6 @@ class WorldEditor:
             )
 
         return self._commands.call(describe)
-
-    def omissions(self, name: str) -> list[str]:
-        """Return the parts that a model was spawned without; none of a light."""
-        return omissions(self._world, name)
 
     def move(self, name: str, pose: Pose) -> None:
         """Move a model, at rest, so that its frame is at a pose in the world."""

@@ -23,8 +23,9 @@ class WorldInspection:
         )
 
     def omissions(self, model: str) -> list[str]:
-        """Return the parts that a model was spawned without, each in a few words."""
-        return omissions(self._world, model)
+        """Return the parts that a model was spawned without; [] of a light."""
+        found = self._world.models.get(model)
+        return list(found.left_out) if found is not None else []
 
     def set_state(self, model: str, link: str | None, pose: Pose, twist: Twist) -> None:
         """Set pose and velocity in the world."""
@@ -59,12 +60,6 @@ class WorldInspection:
     def _part(self, model: str, link: str | None) -> Model | Link:
         found = self._world.model(model)
         return found if link is None else found.link(link)
-
-
-def omissions(world: World, name: str) -> list[str]:
-    """Return the parts that a model was spawned without; [] of a light."""
-    model = world.models.get(name)
-    return list(model.left_out) if model is not None else []
 
 
 def scaled(inertial: Inertial, mass: float) -> Inertial:

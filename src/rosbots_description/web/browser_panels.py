@@ -12,6 +12,7 @@ from .drive import DrivePanel, VelocityCommands
 from .editor import EditorPanel
 from .follow import FollowPanel
 from .gizmo import Drags, Gizmo
+from .ground_clicks import GroundClicks
 from .history import History
 from .insert import InsertPanel
 from .inspector import Inspector
@@ -21,7 +22,6 @@ from .models import Models
 from .notices import Notices
 from .outline import Outline
 from .panel import Panel
-from .place import Places
 from .polled import Polled
 from .selection import Selection
 from .show import ShowPanel
@@ -56,7 +56,7 @@ class Shared:
     start: StartView
     history: History
     polled: Polled
-    places: Places
+    clicks: GroundClicks
     velocities: VelocityCommands | None
     drags: Drags
 
@@ -173,9 +173,10 @@ class BrowserPanels(Panel):
                         library,
                         lambda: shared.polled.insertable,
                         editor,
+                        shared.polled,
                         self.selection,
                         shared.history,
-                        shared.places,
+                        shared.clicks,
                         self._notify,
                     )
                 )

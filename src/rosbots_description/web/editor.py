@@ -1,6 +1,6 @@
 """Edits of models, and the controls for them: push, duplicate, delete what is selected."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from typing import Protocol
 
@@ -34,9 +34,6 @@ class Editor(Protocol):
 
     def describe(self, name: str) -> ModelText:
         """Return what is needed to spawn a model again as it is."""
-
-    def omissions(self, name: str) -> Sequence[str]:
-        """Return the parts that a model was spawned without, each in a few words."""
 
     def move(self, name: str, pose: Pose) -> None:
         """Move a model, at rest, so that its frame is at a pose in the world."""

@@ -11,9 +11,10 @@ from ..sim.core import Pose, SimError, Vector
 from ..sim.description import LightSpec, ModelSpec, ModelText, SceneChange
 from .choice import Choice
 from .editor import Editor
+from .ground_clicks import GroundClicks
 from .history import History
+from .inspector import States
 from .panel import Panel, attempt
-from .place import Places
 from .selection import Selection
 from .shapes import KINDS, point_light, shape
 from .site import Site
@@ -21,6 +22,7 @@ from .site import Site
 MOST = 1000  # names that are offered
 LISTED = 4  # parts that a model was spawned without
 NONE = '(none)'
+ASK_PLACE = 'Click on the ground where the next model is to appear.'
 
 
 class Library(Protocol):
@@ -58,15 +60,17 @@ class InsertPanel(Panel):
         library: Library,
         offered: Callable[[], tuple[Sequence[str], Sequence[str]]],
         editor: Editor,
+        states: States,
         selection: Selection,
         history: History,
-        places: Places,
+        clicks: GroundClicks,
         complain: Callable[[str], None],
     ) -> None:
         """Add the controls; `offered` returns models of the model path, and parameters."""
         self._client, self._library, self._offered, self._editor = client, library, offered, editor
-        self._selection, self._history, self._places = selection, history, places
-        self._complain = complain
+        self._states, self._selection, self._history = states, selection, history
+        self._clicks, self._complain = clicks, complain
+        self._place: Vector | None = None  # that was clicked on for the next model
         self._lights: Mapping[str, LightSpec] = {}
         gui = client.gui
         place = gui.add_button(
@@ -100,7 +104,7 @@ class InsertPanel(Panel):
             red, green, blue = (part / 255.0 for part in colour.value)
             return red, green, blue
 
-        place.on_click(lambda _: places.choose(client))
+        place.on_click(lambda _: clicks.ask(client, ASK_PLACE, self._keep_place))
         add_shape.on_click(
             lambda _: self._insert(
                 lambda _: library.shape(
@@ -144,12 +148,12 @@ class InsertPanel(Panel):
         """Insert what `read` returns for the place of the browser."""
 
         def insert() -> None:
-            place = self._places.take(self._client)
+            place = self._take_place()
             text = replace(read(place), pose=Pose(place))
             name = self._editor.insert(text, on_ground=True, beside=True)
             self._selection.expect(name)
             self._history.add(f"insert '{name}'", partial(self._editor.delete, name))
-            missing = self._editor.omissions(name)
+            missing = self._states.omissions(name)
             if missing:
                 more = f' and {len(missing) - LISTED} more' if len(missing) > LISTED else ''
                 self._complain(
@@ -159,6 +163,19 @@ class InsertPanel(Panel):
 
         with self._history.turn:
             attempt(insert, self._complain)
+
+    def _keep_place(self, client: viser.ClientHandle, point: Vector) -> None:
+        self._place = point
+        self._clicks.mark(client, point)
+
+    def _take_place(self) -> Vector:
+        """Return the place that was clicked on, once; else the one that the camera looks at [m]."""
+        place, self._place = self._place, None
+        if place is not None:
+            self._clicks.unmark(self._client)
+            return place
+        x, y, _ = self._client.camera.look_at
+        return float(x), float(y), 0.0
 
     def _remove_light(self) -> None:
         with self._history.turn:

@@ -30,7 +30,7 @@ class States(Protocol):
         """
 
     def omissions(self, model: str) -> Sequence[str]:
-        """Return the parts that a model was spawned without, each in a few words.
+        """Return the parts that a model was spawned without, each in a few words; [] of a light.
 
         Raises:
             SimError: as above.

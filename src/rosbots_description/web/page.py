@@ -28,7 +28,6 @@ from .maps import MapPanel
 from .models import Models
 from .notices import Notices
 from .panel import Panel
-from .place import Places
 from .plot import PlotPanel
 from .polled import Polled
 from .scene import SceneView
@@ -98,7 +97,7 @@ class Page:
             self._start,
             history,
             polled,
-            Places(site, clicks),
+            clicks,
             None if simulator.robots is None else VelocityCommands(simulator.robots),
             Drags(),
         )

@@ -62,9 +62,9 @@ class Polled(Panel):
         return self._states[model, link]
 
     def omissions(self, model: str) -> Sequence[str]:
-        """Return the parts that a model was spawned without."""
-        assert self._simulator.inspection is not None
-        return self._simulator.inspection.omissions(model)
+        """Return the parts that a model was spawned without; see `inspector.States`."""
+        inspection = self._simulator.inspection
+        return inspection.omissions(model) if inspection is not None else ()
 
     def _look_around(self) -> None:
         library = self._simulator.library

@@ -4,7 +4,6 @@ from typing import Any
 
 import genpy
 import rospy
-from rosbots_msgs.srv import GetModelOmissions
 
 from ...sim.core import SimError
 from ..clients.gazebo_interface import interruptibly
@@ -20,23 +19,22 @@ def call(
     Raises:
         SimError: it was not reached, did not answer in time, or refused.
     """
-    service = rospy.resolve_name(f'gazebo/{name}')
-    try:
-        answer = interruptibly(lambda: rospy.ServiceProxy(service, kind)(**request), timeout)
-    except (rospy.ServiceException, rospy.ROSException) as error:
-        raise SimError(f'{service}: {error}') from error
+    answer = answer_of(name, kind, timeout, **request)
     if not getattr(answer, 'success', True):
         raise SimError(answer.status_message)
     return answer
 
 
-def model_omissions(name: str) -> list[str]:
-    """Return the parts that a model was spawned without, each in a few words; [] of a light."""
-    service = rospy.resolve_name('gazebo/get_model_omissions')
+def answer_of(
+    name: str, kind: type[Any], timeout: float = TIMEOUT, /, **request: object
+) -> genpy.Message:
+    """Return the answer of such a service, also if it refused.
+
+    Raises:
+        SimError: it was not reached, or did not answer in time.
+    """
+    service = rospy.resolve_name(f'gazebo/{name}')
     try:
-        answer = interruptibly(
-            lambda: rospy.ServiceProxy(service, GetModelOmissions)(name), TIMEOUT
-        )
+        return interruptibly(lambda: rospy.ServiceProxy(service, kind)(**request), timeout)
     except (rospy.ServiceException, rospy.ROSException) as error:
         raise SimError(f'{service}: {error}') from error
-    return list(answer.omissions)

@@ -16,7 +16,7 @@ from rosbots_msgs.srv import GetModelDescription, HoldModel, InsertModel
 from ...sim.core import Pose, SimError, Vector
 from ...sim.description import ModelText
 from ..messages import fill_pose, read_pose
-from .calls import call, model_omissions
+from .calls import call
 
 SPAWN_TIMEOUT = 60.0  # for large meshes [s, wall]
 MAX_DURATION = 1e6  # of a push [s, simulated]
@@ -60,10 +60,6 @@ class RosEditor:
             pose=read_pose(found.pose),
             joints=dict(zip(found.joint_names, found.joint_positions, strict=True)),
         )
-
-    def omissions(self, name: str) -> list[str]:
-        """Return the parts that a model was spawned without; none of a light."""
-        return model_omissions(name)
 
     def move(self, name: str, pose: Pose) -> None:
         """Move a model, at rest, so that its frame is at a pose in the world."""

@@ -9,11 +9,11 @@ from gazebo_msgs.srv import (
     SetLinkState,
     SetModelState,
 )
-from rosbots_msgs.srv import SetFriction
+from rosbots_msgs.srv import GetModelOmissions, SetFriction
 
 from ...sim.core import Pose, Twist
 from ..messages import fill_pose, fill_twist, read_pose, read_twist
-from .calls import TIMEOUT, call, model_omissions
+from .calls import TIMEOUT, answer_of, call
 
 _MOMENTS = ('ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz')
 
@@ -35,8 +35,9 @@ class RosInspection:
         return read_pose(state.pose), read_twist(state.twist)
 
     def omissions(self, model: str) -> list[str]:
-        """Return the parts that a model was spawned without, each in a few words."""
-        return model_omissions(model)
+        """Return the parts that a model was spawned without; [] of a light."""
+        answer = answer_of('get_model_omissions', GetModelOmissions, model_name=model)
+        return list(answer.omissions)
 
     def set_state(self, model: str, link: str | None, pose: Pose, twist: Twist) -> None:
         """Set pose and velocity in the world."""
