@@ -4,7 +4,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from typing import TypeVar
 
 from ..sim import SimError
@@ -25,7 +25,8 @@ class WorldCommands:
     def __init__(self, changed: threading.Condition) -> None:
         """Begin empty; `changed` is notified of each command."""
         self._changed = changed
-        self._waiting: deque[Callable[[], None]] = deque()
+        # Each as two functions: one carries it out, one refuses it.
+        self._waiting: deque[tuple[Callable[[], None], Callable[[], object]]] = deque()
         self._is_over = False
 
     @property
@@ -46,16 +47,14 @@ class WorldCommands:
         def carry_out() -> None:
             if result.set_running_or_notify_cancel():
                 try:
-                    if self._is_over:
-                        raise SimError(BUSY)
                     result.set_result(command())
                 except Exception as error:  # it goes to the caller
                     result.set_exception(error)
 
-        self._add(carry_out)
+        self._add(carry_out, result.cancel)
         try:
             return result.result(patience)
-        except TimeoutError:
+        except (CancelledError, TimeoutError):
             if result.cancel():
                 raise SimError(BUSY) from None
             return result.result()
@@ -67,28 +66,30 @@ class WorldCommands:
 
         def carry_out() -> None:
             try:
-                if not self._is_over:
-                    command()
+                command()
             except (SimError, ValueError) as error:
                 logger.warning('%s', error)
 
-        self._add(carry_out)
+        self._add(carry_out, lambda: None)
 
     def carry_out(self) -> None:
         """Carry out what waits; to be called by the thread that owns the world."""
         for _ in range(len(self._waiting)):
-            self._waiting.popleft()()
+            act, _refuse = self._waiting.popleft()
+            act()
 
     def end(self) -> None:
         """Refuse what waits, and what comes; to be called by the thread that owns the world."""
         with self._changed:
             self._is_over = True
-        self.carry_out()
+        while self._waiting:
+            _act, refuse = self._waiting.popleft()
+            refuse()
 
-    def _add(self, command: Callable[[], None]) -> None:
+    def _add(self, act: Callable[[], None], refuse: Callable[[], object]) -> None:
         with self._changed:
             if not self._is_over:
-                self._waiting.append(command)
+                self._waiting.append((act, refuse))
                 self._changed.notify_all()
                 return
-        command()  # it is refused
+        refuse()
