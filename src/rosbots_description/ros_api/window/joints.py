@@ -30,16 +30,6 @@ COMMAND = '/command'  # the end of the topics of controllers
 POSITIONS = 'Position', 'Trajectory'  # in the types of controllers whose commands are positions
 
 
-def number(_joints: Sequence[str], values: Sequence[float]) -> Float64:
-    """Return the command of a controller of one joint."""
-    return Float64(values[0])
-
-
-def array(_joints: Sequence[str], values: Sequence[float]) -> Float64MultiArray:
-    """Return the command of a group of joints."""
-    return Float64MultiArray(data=values)
-
-
 def trajectory(joints: Sequence[str], values: Sequence[float]) -> JointTrajectory:
     """Return a motion of joints to positions, that begins at once."""
     return JointTrajectory(
@@ -47,11 +37,12 @@ def trajectory(joints: Sequence[str], values: Sequence[float]) -> JointTrajector
     )
 
 
+# What controllers take of joints and values, by the type of their topics.
 COMMANDS: Mapping[str, tuple[type, Callable[[Sequence[str], Sequence[float]], object]]] = {
     kind._type: (kind, message)
     for kind, message in (
-        (Float64, number),
-        (Float64MultiArray, array),
+        (Float64, lambda _joints, values: Float64(values[0])),
+        (Float64MultiArray, lambda _joints, values: Float64MultiArray(data=values)),
         (JointTrajectory, trajectory),
     )
 }

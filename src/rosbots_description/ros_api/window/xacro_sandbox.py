@@ -51,28 +51,11 @@ def expanded(name: str, content: bytes) -> bytes:
     with tempfile.TemporaryDirectory(prefix='gzweb-') as folder:
         file = Path(folder, 'upload.xacro')
         file.write_bytes(content)
-        command = [
-            *_sandbox([*folders, *sys.path, sys.prefix, sys.base_prefix]),
-            '--ro-bind',
-            folder,
-            UPLOAD,
-            '--chdir',
-            UPLOAD,
-            '--remount-ro',
-            '/',
-            'prlimit',
-            f'--cpu={PROCESSOR_TIME}',
-            f'--as={MEMORY}',
-            f'--nproc={PROCESSES}',
-            f'--fsize={MAX_XML_BYTES}',
-            '--core=0',
-            sys.executable,
-            '-B',
-            '-X',
-            'utf8',
-            str(program),
-            f'{UPLOAD}/upload.xacro',
-        ]
+        command = _sandbox([*folders, *sys.path, sys.prefix, sys.base_prefix])
+        command += ['--ro-bind', folder, UPLOAD, '--chdir', UPLOAD, '--remount-ro', '/']
+        command += ['prlimit', f'--cpu={PROCESSOR_TIME}', f'--as={MEMORY}']
+        command += [f'--nproc={PROCESSES}', f'--fsize={MAX_XML_BYTES}', '--core=0']
+        command += [sys.executable, '-B', '-X', 'utf8', str(program), f'{UPLOAD}/upload.xacro']
         with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as said:
             failed = _run(command, out, said)
             if failed:
@@ -123,33 +106,18 @@ def _unusable() -> str:
 
 def _sandbox(folders: Iterable[str]) -> list[str]:
     """Return the command line of a sandbox that shows some folders besides the system's own."""
-    made = [
-        'bwrap',
-        '--unshare-all',
-        '--die-with-parent',
-        '--new-session',
-        '--cap-drop',
-        'ALL',
-        '--clearenv',
-        '--setenv',
-        'PATH',
-        '/usr/bin:/bin',
-        '--setenv',
-        'LANG',
-        'C.UTF-8',
-        '--setenv',
-        'HOME',
-        '/',
-        '--setenv',
-        'ROS_HOME',
-        '/',
-        '--setenv',
-        'PYTHONPATH',
-        os.pathsep.join(filter(os.path.isabs, sys.path)),
-    ]
-    for name in VARIABLES:
-        if name in os.environ:
-            made += ['--setenv', name, os.environ[name]]
+    made = ['bwrap', '--unshare-all', '--die-with-parent', '--new-session', '--clearenv']
+    made += ['--cap-drop', 'ALL']
+    environment = {
+        'PATH': '/usr/bin:/bin',
+        'LANG': 'C.UTF-8',
+        'HOME': '/',
+        'ROS_HOME': '/',
+        'PYTHONPATH': os.pathsep.join(filter(os.path.isabs, sys.path)),
+        **{name: os.environ[name] for name in VARIABLES if name in os.environ},
+    }
+    for name, value in environment.items():
+        made += ['--setenv', name, value]
     made += ['--ro-bind', '/usr', '/usr', '--ro-bind-try', '/etc/ld.so.cache', '/etc/ld.so.cache']
     for system in ('/bin', '/lib', '/lib32', '/lib64', '/sbin'):
         if os.path.islink(system):
