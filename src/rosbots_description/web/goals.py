@@ -54,19 +54,13 @@ class GoalPanel(Panel):
         clicks: GroundClicks,
         notify: Callable[[str], None],
     ) -> None:
-        self._tools = (
-            Tool(gui, GOAL, goals.goal_topics, goals.send_goal, goals, models, clicks, notify),
-            Tool(
-                gui,
-                ESTIMATE,
-                goals.estimate_topics,
-                goals.send_estimate,
-                goals,
-                models,
-                clicks,
-                notify,
-            ),
-        )
+        self._tools = [
+            Tool(gui, label, topics, send, goals, models, clicks, notify)
+            for label, topics, send in (
+                (GOAL, goals.goal_topics, goals.send_goal),
+                (ESTIMATE, goals.estimate_topics, goals.send_estimate),
+            )
+        ]
         self._goals = goals
 
     def close(self) -> None:

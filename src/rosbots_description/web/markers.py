@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import viser
 
-from ..sim.core import ModelError, Vector, add
+from ..sim.core import ModelError, Vector, add, as_vector
 from ..sim.description import Inertial, Material, Plane, ShownLink, ShownModel, Visual
 from ..sim.description.inertia import principal_axes
 from ..sim.rendering import visual_gltf
@@ -79,16 +79,9 @@ def joint_axes(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownL
     arrows = []
     for joint in model.joints:
         if joint.child == link.name:
-            start, along = joint.pose.position, joint.axis_in_child
-            arrows.append(
-                (
-                    start,
-                    add(
-                        start,
-                        (AXIS_LENGTH * along[0], AXIS_LENGTH * along[1], AXIS_LENGTH * along[2]),
-                    ),
-                )
-            )
+            start = joint.pose.position
+            along = as_vector(AXIS_LENGTH * part for part in joint.axis_in_child)
+            arrows.append((start, add(start, along)))
     if arrows:
         scene.add_arrows(
             path,
