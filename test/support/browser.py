@@ -67,6 +67,10 @@ class Browser:
     def send(self, message):
         self._connection.send(msgspec.msgpack.encode(message))
 
+    def tell(self, kind, **fields):
+        """Send a message of a type."""
+        self.send({'type': kind, **fields})
+
     def read(self, seconds=0.05):
         """Take in what comes within so many seconds."""
         end = time.monotonic() + seconds
@@ -105,37 +109,54 @@ class Browser:
     def hold(self, label):
         """Be holding the button of that label, once."""
         self.wait_until(lambda: self.control(label))
-        self.send({'type': 'GuiButtonHoldMessage', 'uuid': self.control(label), 'frequency': 10.0})
+        self.tell('GuiButtonHoldMessage', uuid=self.control(label), frequency=10.0)
 
     def press(self, key):
         """Press a key, when it does something."""
         self.wait_until(lambda: key in self.keys)
-        self.send({'type': 'CommandTriggerMessage', 'uuid': self.keys[key]})
+        self.tell('CommandTriggerMessage', uuid=self.keys[key])
 
     def choose(self, label, value):
         """Set the value of a control, when there is one of that label."""
         self.wait_until(lambda: self.control(label))
-        self.send(
-            {'type': 'GuiUpdateMessage', 'uuid': self.control(label), 'updates': {'value': value}}
-        )
+        self.update(self.control(label), value)
+
+    def update(self, number, value):
+        """Set the value of the control of that number."""
+        self.tell('GuiUpdateMessage', uuid=number, updates={'value': value})
 
     def look_at(self, point, position=CAMERA['position']):
         """Turn the camera to a point, or move it, too."""
         self.send({**CAMERA, 'look_at': point, 'position': position})
 
     def click_node(self, name):
-        """Click on a node of the scene."""
-        self.send(
-            {
-                'type': 'SceneNodeClickMessage',
-                'name': name,
-                'instance_index': None,
-                'ray_origin': [0.0, 0.0, 0.0],
-                'ray_direction': [1.0, 0.0, 0.0],
-                'screen_pos': [0.5, 0.5],
-                'modifier': None,
-                'owner': '',
-            }
+        """Click on a node of the scene, when it is there."""
+        self.wait_until(lambda: name in self.nodes)
+        self.tell(
+            'SceneNodeClickMessage',
+            name=name,
+            instance_index=None,
+            ray_origin=[0.0, 0.0, 0.0],
+            ray_direction=[1.0, 0.0, 0.0],
+            screen_pos=[0.5, 0.5],
+            modifier=None,
+            owner='',
+        )
+
+    def drag_node(self, name, phase, position, owner=''):
+        """Begin, go on or end to drag a node of the scene, by the phase's name, to a position."""
+        self.tell(
+            'SceneNodeDragMessage',
+            phase=phase,
+            name=name,
+            instance_index=None,
+            start_position=position,
+            start_screen_pos=[0.5, 0.5],
+            end_position=position,
+            end_screen_pos=[0.5, 0.5],
+            button='left',
+            modifier=None,
+            owner=owner,
         )
 
     def grab(self, node):
@@ -153,82 +174,79 @@ class Browser:
         self._send_of_handle('TransformControlsDragEndMessage', node)
 
     def _send_of_handle(self, kind, node, **more):
-        self.send({'type': kind, 'name': node, 'owner': self.owners.get(node, ''), **more})
+        self.tell(kind, name=node, owner=self.owners.get(node, ''), **more)
 
     def click_ray(self, origin, direction):
         """Click where a ray goes."""
-        self.send(
-            {
-                'type': 'ScenePointerMessage',
-                'event_type': 'click',
-                'ray_origin': origin,
-                'ray_direction': direction,
-                'screen_pos': [[0.5, 0.5]],
-                'modifier': None,
-            }
+        self.tell(
+            'ScenePointerMessage',
+            event_type='click',
+            ray_origin=origin,
+            ray_direction=direction,
+            screen_pos=[[0.5, 0.5]],
+            modifier=None,
         )
 
     def upload(self, label, name, content, claimed=None):
         """Upload a file in parts of 1000 bytes, or of as many bytes as claimed."""
         parts = [content[n : n + 1000] for n in range(0, len(content), 1000)]
-        button = self.control(label)
-        self.send(
-            {
-                'type': 'FileTransferStartUpload',
-                'source_component_uuid': button,
-                'transfer_uuid': name,
-                'filename': name,
-                'mime_type': '',
-                'part_count': len(parts),
-                'size_bytes': claimed or len(content),
-            }
-        )
+        self.begin_file(label, name, claimed or len(content), len(parts))
         for number, part in enumerate(parts):
-            self.send(
-                {
-                    'type': 'FileTransferPart',
-                    'source_component_uuid': button,
-                    'transfer_uuid': name,
-                    'part_index': number,
-                    'content': part,
-                }
-            )
+            self.send_part(label, name, number, part)
+
+    def begin_file(self, label, name, size, count):
+        """Begin a file of so many bytes in so many parts."""
+        self.tell(
+            'FileTransferStartUpload',
+            source_component_uuid=self.control(label),
+            transfer_uuid=name,
+            filename=name,
+            mime_type='',
+            part_count=count,
+            size_bytes=size,
+        )
+
+    def send_part(self, label, name, index=0, content=b'x'):
+        """Send a part of it."""
+        self.tell(
+            'FileTransferPart',
+            source_component_uuid=self.control(label),
+            transfer_uuid=name,
+            part_index=index,
+            content=content,
+        )
+
+    def received(self, kind):
+        """Return the messages of a type that have come."""
+        return [message for message in self.messages if message['type'] == kind]
 
     def notes(self):
         """Return what the page has notified of."""
-        return [
-            message['props']['title']
-            for message in self.messages
-            if message['type'] == 'NotificationShowMessage'
-        ]
+        return [message['props']['title'] for message in self.received('NotificationShowMessage')]
+
+    def noted(self, part):
+        """Tell whether one of the notices has a text in it."""
+        return any(part in note for note in self.notes())
 
     def answer_render(self, content):
         """Give the picture that is asked for, the bytes of a JPEG or PNG; tell if there is one."""
-        asked = [
-            message['render_uuid']
-            for message in self.messages
-            if message['type'] == 'GetRenderRequestMessage'
-        ]
+        asked = self.received('GetRenderRequestMessage')
         if len(asked) == self.renders:
             return False
         self.renders = len(asked)
-        self.send(
-            {'type': 'GetRenderResponseMessage', 'payload': content, 'render_uuid': asked[-1]}
-        )
+        number = asked[-1]['render_uuid']
+        self.tell('GetRenderResponseMessage', payload=content, render_uuid=number)
         return True
 
     def download(self):
         """Return name and content of the file that came last; None if there is none yet."""
-        started = [
-            message for message in self.messages if message['type'] == 'FileTransferStartDownload'
-        ]
+        started = self.received('FileTransferStartDownload')
         if not started:
             return None
         parts = [
             message['content']
-            for message in self.messages
-            if message['type'] == 'FileTransferPart'
-            and message['transfer_uuid'] == started[-1]['transfer_uuid']
+            for message in self.received('FileTransferPart')
+            if message['transfer_uuid'] == started[-1]['transfer_uuid']
         ]
         is_whole = len(parts) == started[-1]['part_count']
         return (started[-1]['filename'], b''.join(parts)) if is_whole else None
@@ -248,6 +266,15 @@ class Browser:
             if content.startswith(WORDS)
         ]
 
+    def shows(self, part):
+        """Tell whether one of these texts has another in it."""
+        return any(part in text for text in self.texts())
+
+    def view(self):
+        """Return eye and target that the page has told the camera last."""
+        eyes = self.received('SetCameraPositionMessage')
+        return eyes[-1]['position'], self.received('SetCameraLookAtMessage')[-1]['look_at']
+
     def tables(self):
         """Return the HTML that is shown of what is selected, in one."""
         return ''.join(
@@ -264,7 +291,11 @@ class Browser:
 
     def value(self, label):
         """Return the value of the control of that label."""
-        return self.controls[self.control(label)][1]['value']
+        return self.props(label)['value']
+
+    def props(self, label):
+        """Return the properties of the control of that label."""
+        return self.controls[self.control(label)][1]
 
     def _take(self, message):
         kind, name = message['type'], message.get('name')

@@ -1,17 +1,31 @@
 """What the window's page is tested with: a simulator that remembers, and what it would show."""
 
+from contextlib import contextmanager
 from functools import partial
 
 from rosbots_description.sim.core import Pose, SimError, Twist
 from rosbots_description.sim.description import (
     Box,
     ModelText,
+    SceneChange,
     ShownLink,
     ShownModel,
     ShownMotion,
     ShownReading,
     Visual,
 )
+from rosbots_description.web import Site
+from rosbots_description.web.models import Models
+
+
+@contextmanager
+def serving(host='127.0.0.1', *token, **options):
+    """Yield a site at a free port, until it is no longer needed."""
+    site = Site(host, 0, *token, **options)
+    try:
+        yield site
+    finally:
+        site.stop()
 
 
 class FakeContacts:
@@ -27,13 +41,31 @@ class FakeContacts:
         self.show = None
 
 
-class FakeSimulator:
-    """Remembers what it is told; most parts of it are this object."""
+class Remembering:
+    """Remembers what it is told, and refuses with its fault if it has one."""
 
     def __init__(self):
-        self.told = []
+        self.told, self.fault = [], ''
+
+    def done(self, *names):
+        """Return what was told by the methods of these names."""
+        return [told for told in self.told if told[0] in names]
+
+    def __getattr__(self, name):
+        return partial(self._note, name)
+
+    def _note(self, name, *arguments):
+        self.told.append((name, *arguments))
+        if self.fault:
+            raise SimError(self.fault)
+
+
+class FakeSimulator(Remembering):
+    """A simulator; most parts of it are this object."""
+
+    def __init__(self):
+        super().__init__()
         self.change = self.motion = None
-        self.fault = ''
         self.where = Pose(), Twist()
         self.topics = ()
         self.view = self.time = self.robots = self.inspection = self.editor = self.library = (
@@ -94,34 +126,19 @@ class FakeSimulator:
         self._note('describe', name)
         return ModelText(name, 'text', pose=Pose((1.0, 0.0, 0.0)))
 
-    def __getattr__(self, name):
-        return partial(self._note, name)
 
-    def _note(self, name, *arguments):
-        self.told.append((name, *arguments))
-        if self.fault:
-            raise SimError(self.fault)
-
-
-class FakeJoints:
-    """Remembers what it is told; all joints stand at `now`."""
+class FakeJoints(Remembering):
+    """Joints that all stand at `now`."""
 
     def __init__(self):
-        self.told, self.topics, self.now, self.fault = [], (), 0.25, ''
+        super().__init__()
+        self.topics, self.now = (), 0.25
 
     def position(self, model, joint):
         return self.now
 
     def command_topics(self):
         return self.topics
-
-    def __getattr__(self, name):
-        def note(*arguments):
-            self.told.append((name, *arguments))
-            if self.fault:
-                raise SimError(self.fault)
-
-        return note
 
 
 class FakeTopics:
@@ -167,11 +184,12 @@ class FakeMaps(FakeTopics):
         return self.truth
 
 
-class FakeGoals:
-    """Keeps the poses that it is sent; `frames` says at which link each is, and where."""
+class FakeGoals(Remembering):
+    """Topics of poses; `frames` says at which link each frame is, and where."""
 
     def __init__(self):
-        self.goals, self.estimates, self.sent = (), (), []
+        super().__init__()
+        self.goals, self.estimates = (), ()
         self.frames = {}
         self.is_listening = False
 
@@ -187,12 +205,6 @@ class FakeGoals:
 
     def rest(self):
         self.is_listening = False
-
-    def send_goal(self, *sent):
-        self.sent.append(('goal', *sent))
-
-    def send_estimate(self, *sent):
-        self.sent.append(('estimate', *sent))
 
 
 class FakeSignals:
@@ -218,15 +230,31 @@ class FakeSignals:
         return {curve: samples.get(curve, []) for curve in self.open_curves}
 
 
+class Shown:
+    """Remembers what a view shows."""
+
+    def __init__(self, view):
+        self.changes, self.motions = [], []
+        view.open(self.changes.append, self.motions.append)
+
+
 def selection(page):
     """Return what is selected in the browser that connected first."""
     return next(iter(page.browsers.values())).selection
 
 
-def model(name, number, shape=None, position=(0.0, 0.0, 0.0)):
-    """Return a model of one link, 'link', with a visual 1 m above its frame."""
+def model(name, number, shape=None, position=(0.0, 0.0, 0.0), links=('link',)):
+    """Return a model of links, numbered from that on, each with a visual 1 m above its frame."""
     visual = Visual('v', shape or Box((1.0, 1.0, 1.0)), Pose((0.0, 0.0, 1.0)))
-    return ShownModel(name, (ShownLink(number, 'link', Pose(position), (visual,)),))
+    found = (ShownLink(n, link, Pose(position), (visual,)) for n, link in enumerate(links, number))
+    return ShownModel(name, tuple(found))
+
+
+def models_with(*shown):
+    """Return the models of a page that is shown these."""
+    models = Models()
+    models.apply(SceneChange(True, shown))
+    return models
 
 
 def clock(time=0.0, real_time=0.0, paused=False, **poses):

@@ -27,15 +27,9 @@ def other(browser, simulator, page, site):
     simulator.change(SceneChange(True, (model('a', 1), model('b', 2, position=(5.0, 0.0, 0.0)))))
     with Browser(site.address) as other:
         for one, name in ((browser, 'a'), (other, 'b')):
-            one.wait_until(lambda one=one, name=name: f'/models/{name}/link/0 v' in one.nodes)
             one.click_node(f'/models/{name}/link/0 v')
             one.wait_until(lambda one=one: NODE in one.nodes)
         yield other
-
-
-def commands(simulator):
-    """Return what the simulator was told to do."""
-    return [told for told in simulator.told if told[0] not in ('state', 'describe')]
 
 
 def selected(browser):
@@ -49,7 +43,7 @@ def test_each_sees_box_handle_and_numbers_of_its_own_selection(browser, other, s
         assert selected(one) == {name}
         assert one.nodes[NODE][1] == [x, 0.0, 0.0]
     page.poll()
-    assert {told[1] for told in simulator.told if told[0] == 'state'} == {'a', 'b'}
+    assert {model for _, model, _ in simulator.done('state')} == {'a', 'b'}
     simulator.motion(clock(0.1, 0.1, _2=Pose((6.0, 0.0, 0.0))))
     other.wait_until(lambda: other.nodes[NODE][1] == [6.0, 0.0, 0.0])
     browser.read(0.1)
@@ -65,7 +59,6 @@ def test_a_click_before_the_panels_are_made_is_not_lost(browser, simulator, site
         page_module, 'BrowserPanels', lambda *arguments: made.wait(PATIENCE) and panels(*arguments)
     )
     with Browser(site.address) as other:
-        other.wait_until(lambda: '/models/a/link/0 v' in other.nodes)
         other.click_node('/models/a/link/0 v')
         other.click('World')
         assert saved.wait(PATIENCE)  # clicks are taken in their order
@@ -78,8 +71,8 @@ def test_delete_and_escape_act_on_the_own_selection(browser, other, simulator):
     browser.wait_until(lambda: NODE not in browser.nodes)
     browser.press('delete')
     other.press('delete')
-    other.wait_until(lambda: commands(simulator))
-    assert commands(simulator) == [('delete', 'b')]
+    other.wait_until(lambda: simulator.done('delete'))
+    assert simulator.done('delete') == [('delete', 'b')]
     simulator.change(SceneChange(removed=('b',)))
     other.wait_until(lambda: NODE not in other.nodes)
 
@@ -92,7 +85,7 @@ def test_a_copy_is_selected_where_it_was_made(browser, other, simulator, page):
     browser.read(0.1)
     assert selected(browser) == {'a'}
     browser.click("Undo: duplicate 'b'")  # what was done to the world, all can undo
-    browser.wait_until(lambda: commands(simulator)[-1] == ('delete', 'new b'))
+    browser.wait_until(lambda: simulator.done('delete') == [('delete', 'new b')])
 
 
 def test_what_is_typed_and_chosen_stays_where_it_was(browser, other, simulator, page):
@@ -101,27 +94,16 @@ def test_what_is_typed_and_chosen_stays_where_it_was(browser, other, simulator, 
     )
     simulator.change(SceneChange(models=(arm,)))
     page.poll()
-    browser.wait_until(lambda: 'arm' in browser.controls[browser.control('Of')][1]['options'])
-    for label, value in (
-        ('Find', 'x'),
-        ('Shape mass [kg]', 7.0),
-        ('Frames', True),
-        ('Of', 'arm'),
-        ('Speed [m/s]', 2.0),
-    ):
+    browser.wait_until(lambda: 'arm' in browser.props('Of')['options'])
+    chosen = {'Find': 'x', 'Shape mass [kg]': 7.0, 'Frames': True, 'Of': 'arm', 'Speed [m/s]': 2.0}
+    for label, value in chosen.items():
         browser.choose(label, value)
     browser.wait_until(
         lambda: browser.control('elbow [rad]') and '/models/a/link/Frames' in browser.nodes
     )
     browser.choose('Steps', 5)  # how time goes is for all
     other.wait_until(lambda: other.value('Steps') == 5)
-    assert [other.value(label) for label in ('Find', 'Shape mass [kg]', 'Frames', 'Of')] == [
-        '',
-        1.0,
-        False,
-        '',
-    ]
-    assert other.value('Speed [m/s]') == 0.5
+    assert [other.value(label) for label in chosen] == ['', 1.0, False, '', 0.5]
     assert other.control('elbow [rad]') is None
     assert '/models/a/link/Frames' not in other.nodes
 
@@ -139,12 +121,12 @@ def test_each_drives_its_own_robot(browser, other, simulator, page):
 
     other.wait_until(topics)
     (number,) = topics()
-    other.send({'type': 'GuiUpdateMessage', 'uuid': number, 'updates': {'value': '/b/cmd_vel'}})
+    other.update(number, '/b/cmd_vel')
     for one in (other, browser):
         one.press('I')
         one.read(0.05)
     browser.wait_until(
-        lambda: {told[1] for told in commands(simulator)} == {'/a/cmd_vel', '/b/cmd_vel'}
+        lambda: {topic for _, topic, *_ in simulator.done('drive')} == {'/a/cmd_vel', '/b/cmd_vel'}
     )
 
 
@@ -193,8 +175,8 @@ def test_when_one_has_gone_the_other_goes_on_and_nothing_is_kept(
     other.click('a')
     other.wait_until(lambda: selected(other) == {'a'})
     other.press('delete')
-    other.wait_until(lambda: commands(simulator))
-    assert commands(simulator) == [('delete', 'a')]
+    other.wait_until(lambda: simulator.done('delete'))
+    assert simulator.done('delete') == [('delete', 'a')]
     assert 'Traceback' not in capfd.readouterr().err
 
 
@@ -218,7 +200,7 @@ def test_a_command_that_ends_after_its_browser_has_left_fails_nothing(
     assert 'Traceback' not in capfd.readouterr().err
 
 
-def test_a_browser_that_leaves_while_it_is_let_in_leaves_nothing(browser, site, page, monkeypatch):
+def test_a_browser_that_leaves_while_it_is_let_in_leaves_nothing(client, site, page, monkeypatch):
     """Viser takes the controls of a browser away before it calls back."""
     from rosbots_description.web import browser_panels
 
@@ -227,7 +209,6 @@ def test_a_browser_that_leaves_while_it_is_let_in_leaves_nothing(browser, site, 
         raise RuntimeError
 
     monkeypatch.setattr(browser_panels, 'ViewPanel', leave)
-    (client,) = site.get_clients().values()
     page._leave(client)
     page._enter(client)
     assert page.browsers == {}

@@ -40,20 +40,17 @@ def download(browser, file):
 
 def test_the_world_is_downloaded_as_the_simulator_wrote_it(browser, simulator):
     simulator.save = lambda: ('<sdf/>', 'saved 3 models')
-    browser.wait_until(lambda: browser.control('World'))
     browser.click('World')
     assert download(browser, 'saved.world') == b'<sdf/>'
 
 
 def test_a_world_that_cannot_be_saved_is_told(browser, simulator):
     simulator.fault = 'the simulator does not answer'
-    browser.wait_until(lambda: browser.control('World'))
     browser.click('World')
     browser.wait_until(lambda: browser.notes() == ['the simulator does not answer'])
 
 
 def test_a_picture_has_the_size_and_the_colours_of_the_browser(browser):
-    browser.wait_until(lambda: browser.control('Picture'))
     browser.click('Picture')
     browser.wait_until(partial(browser.answer_render, image('PNG', (200, 100, 50))))
     shown = Image.open(io.BytesIO(download(browser, 'picture.png')))
@@ -61,12 +58,10 @@ def test_a_picture_has_the_size_and_the_colours_of_the_browser(browser):
 
 
 def test_a_video_has_the_frames_of_the_browser_in_their_time(browser):
-    browser.wait_until(lambda: browser.control('Record a video'))
     browser.click('Record a video')
     begin = time.monotonic()
     for colour in ('red', 'lime', 'blue'):
         browser.wait_until(partial(browser.answer_render, image('JPEG', colour)))
-    browser.wait_until(lambda: browser.control('Stop the video'))
     browser.click('Stop the video')
     browser.wait_until(lambda: browser.answer_render(image('JPEG', 'blue')) or browser.download())
     with av.open(io.BytesIO(download(browser, 'video.mp4'))) as video:
@@ -81,7 +76,6 @@ def test_a_video_has_the_frames_of_the_browser_in_their_time(browser):
 
 def test_a_recording_plays_the_scene_without_a_server(browser, simulator):
     simulator.change(SceneChange(True, (model('a', 1),)))
-    browser.wait_until(lambda: browser.control('Record a recording'))
     browser.click('Record a recording')
     browser.wait_until(lambda: browser.control('Stop the recording'))
     for moment in (0.0, 0.25, 1.5):
@@ -138,11 +132,10 @@ def test_a_recording_has_boxes_and_overlays_of_its_browser_and_of_no_other(
 
 def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page, monkeypatch):
     monkeypatch.setattr(takes, 'LONGEST', 2.0)
-    browser.wait_until(lambda: browser.control('Record a recording'))
     browser.click('Record a recording')
     browser.wait_until(lambda: browser.control('Stop the recording'))
     simulator.motion(clock(1.0, real_time=1.0))
-    browser.wait_until(lambda: any('00:00:01.000' in text for text in browser.texts()))
+    browser.wait_until(lambda: browser.shows('00:00:01.000'))
     page.poll()
     assert browser.control('Stop the recording')
     simulator.motion(clock(real_time=3.5))
@@ -154,15 +147,12 @@ def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page
 def test_takes_end_with_their_browser(site, simulator, page):
     with Browser(site.address) as other:
         with Browser(site.address) as browser:
-            browser.wait_until(lambda: browser.control('Record a recording'))
             browser.click('Record a recording')
             browser.click('Record a video')
-            other.wait_until(
-                lambda: other.control('Stop the recording') and other.control('Stop the video')
-            )
-        other.wait_until(
-            lambda: other.control('Record a recording') and other.control('Record a video')
-        )
+            for label in ('Stop the recording', 'Stop the video'):
+                other.wait_until(lambda label=label: other.control(label))
+        for label in ('Record a recording', 'Record a video'):
+            other.wait_until(lambda label=label: other.control(label))
         wait_until(lambda: site._websock_server._record_handles == [])
         assert other.notes() == []
 
@@ -191,9 +181,8 @@ def test_two_clicks_at_once_begin_one_take_and_end_it(site):
 
 def test_without_pyav_the_page_says_so(browser, monkeypatch):
     monkeypatch.setitem(sys.modules, 'av', None)
-    browser.wait_until(lambda: browser.control('Record a video'))
     browser.click('Record a video')
-    browser.wait_until(lambda: any("'av' is not installed" in note for note in browser.notes()))
+    browser.wait_until(lambda: browser.noted("'av' is not installed"))
 
 
 def scene_of(page):

@@ -25,12 +25,24 @@ def chosen(browser, simulator, page):
 
 def moves(simulator):
     """Return the positions to which models were moved, or at which they were held."""
-    return [what[2].position for what in simulator.told if what[0] in ('move', 'hold')]
+    return [pose.position for _, _, pose, *_ in simulator.done('move', 'hold')]
+
+
+def grab(browser, simulator):
+    """Grab the model; return when it is held."""
+    browser.grab(NODE)
+    browser.wait_until(lambda: moves(simulator))
+
+
+def is_free(browser, simulator):
+    """Return whether no model is held any more."""
+    told = len(simulator.told)
+    browser.read(3 * gizmo.PERIOD)
+    return len(simulator.told) == told
 
 
 def test_delete_and_undo_spawn_it_as_it_was(chosen, simulator):
     chosen.click('Delete')
-    chosen.wait_until(lambda: chosen.control("Undo: delete 'a'"))
     chosen.click("Undo: delete 'a'")
     chosen.wait_until(lambda: len(simulator.told) == 3)
     assert simulator.told == [('describe', 'a'), ('delete', 'a'), ('insert', TEXT, False, False)]
@@ -87,8 +99,7 @@ def test_gizmo_is_at_the_selected_model_and_follows_it(chosen, simulator, page):
 
 
 def test_choosing_a_link_of_the_model_does_not_end_a_drag(chosen, simulator, page):
-    chosen.grab(NODE)
-    chosen.wait_until(lambda: moves(simulator))
+    grab(chosen, simulator)
     selection(page).choose('a', 'link')
     chosen.drag(NODE, [1.0, 2.0, 3.0])
     chosen.wait_until(lambda: moves(simulator)[-1] == (1.0, 2.0, 3.0))
@@ -108,9 +119,7 @@ def test_dragged_model_is_held_until_it_is_let_go(chosen, simulator):
     chosen.let_go(NODE)
     chosen.wait_until(lambda: chosen.control("Undo: move 'a'"))
     assert moves(simulator)[-1] == (4.0, 5.0, 6.0)
-    told = len(simulator.told)
-    chosen.read(3 * gizmo.PERIOD)
-    assert len(simulator.told) == told  # it is free
+    assert is_free(chosen, simulator)
     assert {what[3] for what in simulator.told[:-1]} == {gizmo.HOLD}
     assert simulator.told[-1][3] == 0.0
     chosen.click("Undo: move 'a'")
@@ -169,7 +178,6 @@ def test_slow_simulator_gets_the_newest_pose_only(chosen, simulator, site, monke
 
 def select_too(other):
     """Select the model in another browser."""
-    other.wait_until(lambda: '/models/a/link/0 v' in other.nodes)
     other.click_node('/models/a/link/0 v')
     other.wait_until(lambda: NODE in other.nodes)
 
@@ -181,9 +189,7 @@ def test_browser_that_ends_while_it_drags_releases_the_model(chosen, simulator, 
         other.drag(NODE, [5.0, 0.0, 0.0])
         chosen.wait_until(lambda: moves(simulator)[-1:] == [(5.0, 0.0, 0.0)])
     chosen.wait_until(lambda: chosen.control("Undo: move 'a'"))
-    told = len(simulator.told)
-    chosen.read(3 * gizmo.PERIOD)
-    assert len(simulator.told) == told
+    assert is_free(chosen, simulator)
 
 
 def test_of_two_browsers_the_one_that_grabbed_last_moves_it(chosen, simulator, site):
@@ -203,8 +209,7 @@ def test_of_two_browsers_the_one_that_grabbed_last_moves_it(chosen, simulator, s
 
 
 def test_model_that_goes_ends_the_drag_in_a_sentence(chosen, simulator):
-    chosen.grab(NODE)
-    chosen.wait_until(lambda: moves(simulator))
+    grab(chosen, simulator)
     simulator.fault = 'HoldModel: model does not exist'
     chosen.wait_until(lambda: simulator.fault in chosen.notes())
     assert chosen.notes().count(simulator.fault) == 1
@@ -213,10 +218,7 @@ def test_model_that_goes_ends_the_drag_in_a_sentence(chosen, simulator):
 
 
 def test_another_selection_releases_the_model(chosen, simulator, page):
-    chosen.grab(NODE)
-    chosen.wait_until(lambda: moves(simulator))
+    grab(chosen, simulator)
     selection(page).choose('b')
     chosen.wait_until(lambda: simulator.told[-1][3] == 0.0)
-    told = len(simulator.told)
-    chosen.read(3 * gizmo.PERIOD)
-    assert len(simulator.told) == told
+    assert is_free(chosen, simulator)

@@ -4,14 +4,11 @@ import math
 import re
 
 import pytest
-from support.browser import Browser
-from support.window import FakeGoals
+from support.window import FakeGoals, model, models_with
 
 from rosbots_description.sim.core import Pose, from_rpy, to_rpy
-from rosbots_description.sim.description import SceneChange, ShownLink, ShownModel
 from rosbots_description.web.goals import ESTIMATE, GOAL, GoalPanel
 from rosbots_description.web.ground_clicks import GroundClicks
-from rosbots_description.web.models import Models
 
 TOPIC, INITIAL = '/move_base_simple/goal', '/initialpose'
 DOWN = (0.0, 0.0, -1.0)
@@ -27,30 +24,20 @@ def goals():
 
 
 @pytest.fixture
-def notices():
-    return []
-
-
-@pytest.fixture
-def panel(site, goals, notices):
-    models = Models()
-    models.apply(
-        SceneChange(True, (ShownModel('robot', (ShownLink(1, 'base', Pose((2.0, 0.0, 0.0))),)),))
-    )
-    panel = GoalPanel(site.gui, goals, models, GroundClicks(site), notices.append)
+def panel(site, goals, complaints):
+    models = models_with(model('robot', 1, position=(2.0, 0.0, 0.0), links=('base',)))
+    panel = GoalPanel(site.gui, goals, models, GroundClicks(site), complaints.append)
     panel.refresh()
     return panel
 
 
-@pytest.fixture
-def browser(site, panel):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control(GOAL))
-        yield browser
-
-
 def asks(browser, sentence):
-    browser.wait_until(lambda: any(sentence in note for note in browser.notes()))
+    browser.wait_until(lambda: browser.noted(sentence))
+
+
+def marks(browser):
+    """Return the positions of the points that are marked."""
+    return [state[1] for node, state in browser.nodes.items() if node.startswith('/clicked/')]
 
 
 def click(browser, label, *points):
@@ -61,54 +48,49 @@ def click(browser, label, *points):
 
 
 @pytest.mark.parametrize(
-    ('label', 'kind', 'topic'), [(GOAL, 'goal', TOPIC), (ESTIMATE, 'estimate', INITIAL)]
+    ('label', 'kind', 'topic'), [(GOAL, 'send_goal', TOPIC), (ESTIMATE, 'send_estimate', INITIAL)]
 )
 def test_two_clicks_are_a_place_and_a_heading_in_the_map(
-    browser, goals, notices, label, kind, topic
+    browser, goals, complaints, label, kind, topic
 ):
     click(browser, label, (1.0, 3.0), (1.0, 7.0))
-    browser.wait_until(lambda: goals.sent)
-    ((sent, to, frame, pose),) = goals.sent
+    browser.wait_until(lambda: goals.told)
+    ((sent, to, frame, pose),) = goals.told
     assert (sent, to, frame) == (kind, topic, 'map')
     assert pose.position == pytest.approx((3.0, 0.0, 0.0))  # ahead of the map's origin
     assert to_rpy(pose.orientation) == pytest.approx((0.0, 0.0, 0.0))
-    browser.wait_until(lambda: notices)
-    assert re.fullmatch(rf"{topic}: x 3\.00 m, y -?0\.00 m, yaw -?0\.00 rad in 'map'", notices[0])
+    browser.wait_until(lambda: complaints)
+    assert re.fullmatch(
+        rf"{topic}: x 3\.00 m, y -?0\.00 m, yaw -?0\.00 rad in 'map'", complaints[0]
+    )
 
 
 def test_the_first_point_is_marked_until_the_second_is_known(browser, goals):
     browser.click(GOAL)
     asks(browser, 'click on the ground')
     browser.click_ray([1.0, 2.0, 5.0], DOWN)
-    browser.wait_until(
-        lambda: (
-            [state[1] for node, state in browser.nodes.items() if node.startswith('/clicked/')]
-            == [[1.0, 2.0, 0.0]]
-        )
-    )
+    browser.wait_until(lambda: marks(browser) == [[1.0, 2.0, 0.0]])
     asks(browser, 'Now click')
     browser.click_ray([2.0, 2.0, 5.0], DOWN)
-    browser.wait_until(
-        lambda: goals.sent and not any(node.startswith('/clicked/') for node in browser.nodes)
-    )
+    browser.wait_until(lambda: goals.told and not marks(browser))
 
 
 def test_without_a_map_the_pose_is_in_odom(browser, goals):
     goals.frames['odom'] = goals.frames.pop('map')
     click(browser, GOAL, (1.0, 3.0), (1.0, 7.0))
-    browser.wait_until(lambda: goals.sent)
-    assert goals.sent[0][2] == 'odom'
+    browser.wait_until(lambda: goals.told)
+    assert goals.told[0][2] == 'odom'
 
 
-def test_without_tf_nothing_is_sent_and_the_reason_told(browser, goals, notices):
+def test_without_tf_nothing_is_sent_and_the_reason_told(browser, goals, complaints):
     goals.frames.clear()
     click(browser, GOAL, (1.0, 3.0), (1.0, 7.0))
-    browser.wait_until(lambda: notices)
-    assert 'TF connects neither map nor odom with a robot' in notices[0]
-    assert goals.sent == []
+    browser.wait_until(lambda: complaints)
+    assert 'TF connects neither map nor odom with a robot' in complaints[0]
+    assert goals.told == []
 
 
-def test_a_goal_that_nobody_takes_any_more_is_refused(browser, goals, panel, notices):
+def test_a_goal_that_nobody_takes_any_more_is_refused(browser, goals, panel, complaints):
     browser.click(GOAL)
     asks(browser, 'click on the ground')
     goals.goals = ()
@@ -116,9 +98,9 @@ def test_a_goal_that_nobody_takes_any_more_is_refused(browser, goals, panel, not
     browser.click_ray([1.0, 2.0, 5.0], DOWN)
     asks(browser, 'Now click')
     browser.click_ray([2.0, 2.0, 5.0], DOWN)
-    browser.wait_until(lambda: notices)
-    assert notices == ['nobody takes a 2D Nav Goal any more']
-    assert goals.sent == []
+    browser.wait_until(lambda: complaints)
+    assert complaints == ['nobody takes a 2D Nav Goal any more']
+    assert goals.told == []
 
 
 def test_buttons_are_there_while_somebody_takes_poses(browser, goals, panel):

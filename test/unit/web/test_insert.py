@@ -15,7 +15,7 @@ UPLOAD = 'Upload URDF, xacro or SDF'
 
 def inserted(simulator):
     """Return what the simulator was told to insert."""
-    return [text for what, text, *_ in simulator.told if what == 'insert']
+    return [text for _, text, *_ in simulator.done('insert')]
 
 
 @pytest.fixture
@@ -42,7 +42,6 @@ def test_shape_is_inserted_on_the_ground_where_the_camera_looks(ready, simulator
     assert link.collisions[0].geometry == link.visuals[0].geometry == Cylinder(0.2, 2.0)
     assert link.visuals[0].material.rgba == (1.0, 0.0, 0.2, 1.0)
     assert link.inertial.mass == 3.0
-    ready.wait_until(lambda: ready.control("Undo: insert 'new cylinder'"))
     ready.click("Undo: insert 'new cylinder'")
     ready.wait_until(lambda: simulator.told[-1] == ('delete', 'new cylinder'))
 
@@ -61,7 +60,6 @@ def test_light_is_deleted_and_comes_back(ready, simulator):
     simulator.change(SceneChange(True, lights={'lamp': light}))
     ready.wait_until(lambda: ready.value('Light') == 'lamp')
     ready.click('Delete light')
-    ready.wait_until(lambda: ready.control("Undo: delete 'lamp'"))
     ready.click("Undo: delete 'lamp'")
     ready.wait_until(lambda: inserted(simulator))
     assert simulator.told[0] == ('delete', 'lamp')
@@ -73,12 +71,7 @@ def test_models_of_the_model_path_are_offered(ready, simulator, page):
     ready.wait_until(lambda: 'there is no model on the model path' in ready.notes())
     simulator.names = ['table', 'ground_plane', 'chair']
     ready.wait_until(
-        lambda: (
-            page.poll()
-            or any(
-                props.get('options') == ['table', 'chair'] for _, props in ready.controls.values()
-            )
-        )
+        lambda: page.poll() or ready.props('Model path')['options'] == ['table', 'chair']
     )
     ready.choose('Model path', 'chair')
     ready.click('Insert model')
@@ -104,7 +97,7 @@ def test_refusal_is_shown_and_nothing_can_be_undone(ready, simulator):
 @pytest.mark.parametrize('claimed', [uploads.MAX_BYTES + 1, 2999, 3001])
 def test_file_that_is_too_large_or_not_as_large_as_claimed_is_dropped(ready, simulator, claimed):
     ready.upload(UPLOAD, 'large.urdf', 3000 * b'x', claimed=claimed)
-    ready.wait_until(lambda: any("'large.urdf' has" in note for note in ready.notes()))
+    ready.wait_until(lambda: ready.noted("'large.urdf' has"))
     ready.upload(UPLOAD, 'b.urdf', b'b')
     ready.wait_until(lambda: inserted(simulator))
     assert [text.xml for text in inserted(simulator)] == ['b.urdf: b']
@@ -129,21 +122,20 @@ def test_what_a_model_was_spawned_without_is_shown(ready, simulator):
     simulator.missing = [f"plugin '{number}'" for number in range(6)]
     ready.upload(UPLOAD, 'a.urdf', b'a')
     ready.wait_until(
-        lambda: any(
-            "was spawned without plugin '0', plugin '1', plugin '2', plugin '3' and 2 more" in note
-            for note in ready.notes()
+        lambda: ready.noted(
+            "was spawned without plugin '0', plugin '1', plugin '2', plugin '3' and 2 more"
         )
     )
 
 
 def test_place_is_where_one_clicks_once(ready, simulator, site):
     ready.click('Choose the place')
-    ready.wait_until(lambda: any('Click on the ground' in note for note in ready.notes()))
+    ready.wait_until(lambda: ready.noted('Click on the ground'))
     with Browser(site.address) as other:  # its clicks are its own
         other.wait_until(lambda: len(site.get_clients()) == 2)
         other.click_ray([9.0, 9.0, 9.0], [0.0, 0.0, -1.0])
         ready.click_ray([0.0, 0.0, 4.0], [0.0, 0.0, 1.0])  # the sky
-        ready.wait_until(lambda: any('not on the ground' in note for note in ready.notes()))
+        ready.wait_until(lambda: ready.noted('not on the ground'))
         ready.click_ray([0.0, 0.0, 4.0], [0.5, 0.0, -1.0])
         ready.wait_until(lambda: any(node.startswith('/clicked/') for node in ready.nodes))
     for _ in range(2):

@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from support.browser import Browser
-from support.window import FakeJoints
+from support.window import FakeJoints, model, models_with
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import (
@@ -17,7 +16,6 @@ from rosbots_description.sim.description import (
     ShownModel,
 )
 from rosbots_description.web.joints import MOST, TOPICS, JointPanel
-from rosbots_description.web.models import Models
 
 LIMITED = JointSpec('elbow', REVOLUTE, 'a', 'b', lower=-1.0, upper=2.0, effort=5.0)
 FREE = JointSpec('wheel', REVOLUTE, 'a', 'c')
@@ -34,15 +32,8 @@ def joints():
 
 @pytest.fixture
 def models():
-    models = Models()
     arm = ShownModel('arm', (ShownLink(1, 'a', Pose()),), (LIMITED, FREE, LIFT))
-    models.apply(SceneChange(True, (arm, ShownModel('box', (ShownLink(2, 'a', Pose()),)))))
-    return models
-
-
-@pytest.fixture
-def complaints():
-    return []
+    return models_with(arm, model('box', 2))
 
 
 @pytest.fixture
@@ -52,30 +43,20 @@ def panel(site, joints, models, complaints):
     return panel
 
 
-@pytest.fixture
-def browser(site, panel):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control('Release'))
-        yield browser
-
-
-def props(browser, label):
-    return browser.controls[browser.control(label)][1]
-
-
 def choose(browser, of, *labels):
+    browser.wait_until(lambda: of in browser.props('Of')['options'])
     browser.choose('Of', of)
     browser.wait_until(lambda: all(browser.control(label) for label in labels))
 
 
 def test_models_with_joints_are_offered(browser):
-    assert list(props(browser, 'Of')['options']) == ['', 'arm']
+    assert list(browser.props('Of')['options']) == ['', 'arm']
 
 
 def test_sliders_have_the_limits_of_their_joints(browser):
     choose(browser, 'arm', 'elbow [rad]', 'wheel [rad]', 'lift [m]')
     limits = [
-        (props(browser, name)['min'], props(browser, name)['max'])
+        (browser.props(name)['min'], browser.props(name)['max'])
         for name in ('elbow [rad]', 'wheel [rad]', 'lift [m]')
     ]
     assert limits == [(-1.0, 2.0), (-math.pi, math.pi), (0.0, 1.0)]
@@ -105,7 +86,7 @@ def test_a_slider_sets_a_position(browser, joints):
 def test_a_slider_sets_a_velocity_or_an_effort(browser, joints, what, label, greatest, told):
     browser.choose('Sliders set', what)
     choose(browser, 'arm', label)
-    assert props(browser, label)['max'] == greatest
+    assert browser.props(label)['max'] == greatest
     browser.choose(label, 2.0)
     browser.wait_until(lambda: joints.told)
     assert joints.told == [told]
@@ -122,10 +103,9 @@ def test_release_ends_motors_and_efforts(browser, joints):
 def test_topics_of_controllers_have_sliders(browser, joints, panel):
     joints.topics = (ELBOW,)
     panel.refresh()
-    browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
     browser.choose('Range', 3.0)
     choose(browser, TOPICS, '/elbow_controller/command')
-    assert props(browser, '/elbow_controller/command')['max'] == 3.0
+    assert browser.props('/elbow_controller/command')['max'] == 3.0
     browser.choose('/elbow_controller/command', -1.0)
     browser.wait_until(lambda: joints.told == [('command', ELBOW, (-1.0,))])
     joints.topics = ()
@@ -146,9 +126,8 @@ def test_a_controller_of_several_joints_has_a_slider_for_each(
     elbow, lift = (f'{topic.name} {name}' for name in topic.joints)
     joints.topics = (topic,)
     panel.refresh()
-    browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
     choose(browser, TOPICS, elbow, lift)
-    assert (props(browser, elbow)['min'], props(browser, elbow)['max']) == limits
+    assert (browser.props(elbow)['min'], browser.props(elbow)['max']) == limits
     browser.choose(elbow, 1.5)
     browser.wait_until(lambda: joints.told)
     assert joints.told == [('command', topic, told)]
@@ -158,7 +137,6 @@ def test_a_topic_whose_joints_have_no_room_is_left_out(browser, joints, panel):
     many = CommandTopic('/many/command', tuple(f'joint{number}' for number in range(MOST)))
     joints.topics = (ELBOW, many, FORCES)
     panel.refresh()
-    browser.wait_until(lambda: TOPICS in props(browser, 'Of')['options'])
     choose(browser, TOPICS, ELBOW.name, '/forces/command lift')
     assert not browser.control('/many/command joint0')
 
@@ -181,12 +159,8 @@ def test_sliders_stay_while_nothing_else_is_chosen(browser, panel):
     panel._show()  # as the callback does, when the page has looked again before it
     browser.choose('Range', 3.0)
     browser.wait_until(lambda: browser.control('elbow [rad/s]') not in (None, slider))
-    made = [
-        message
-        for message in browser.messages
-        if message['type'] == 'GuiSliderMessage' and message['props']['label'] == 'elbow [rad/s]'
-    ]
-    assert len(made) == 2
+    made = [message['props']['label'] for message in browser.received('GuiSliderMessage')]
+    assert made.count('elbow [rad/s]') == 2
 
 
 def test_a_refusal_is_told(browser, joints, complaints):

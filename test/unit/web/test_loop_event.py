@@ -7,7 +7,6 @@ from support.browser import Browser
 from viser._messages import RemoveSceneNodeMessage
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from rosbots_description.web import Site
 from rosbots_description.web.loop_event import LoopEvent, leave_to_loop
 
 MESSAGE = RemoveSceneNodeMessage('/robot')
@@ -45,13 +44,9 @@ def test_the_loop_itself_may_add_messages():
     assert asyncio.run(add())
 
 
-def test_every_buffer_of_a_site_leaves_its_event_to_the_loop():
-    site = Site('127.0.0.1', 0)
-    try:
-        with Browser(site.address) as browser:
-            browser.wait_until(site.get_clients)
-            (client,) = site.get_clients().values()
-            for sender in site._websock_server, client._websock_connection:
-                assert isinstance(sender.get_message_buffer().message_event, LoopEvent)
-    finally:
-        site.stop()
+def test_every_buffer_of_a_site_leaves_its_event_to_the_loop(site):
+    with Browser(site.address) as browser:
+        browser.wait_until(site.get_clients)
+        (client,) = site.get_clients().values()
+        for sender in site._websock_server, client._websock_connection:
+            assert isinstance(sender.get_message_buffer().message_event, LoopEvent)

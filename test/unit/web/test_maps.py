@@ -4,20 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from support.browser import Browser
-from support.window import FakeMaps
+from support.window import FakeMaps, clock, model, models_with
 
 from rosbots_description.sim.core import Pose, from_rpy
-from rosbots_description.sim.description import (
-    SceneChange,
-    ShownGrid,
-    ShownLink,
-    ShownModel,
-    ShownMotion,
-    ShownReading,
-)
+from rosbots_description.sim.description import ShownGrid, ShownReading
 from rosbots_description.web.maps import MapPanel
-from rosbots_description.web.models import Models
 
 MAP, NODE = '/map', '/readings/\u2215map'
 GRID = ShownGrid(np.zeros((2, 4, 4), np.uint8), 0.5, Pose((-1.0, 2.0, 0.0), from_rpy(0, 0, 0.5)))
@@ -33,11 +24,7 @@ def maps():
 
 @pytest.fixture
 def models():
-    models = Models()
-    models.apply(
-        SceneChange(True, (ShownModel('robot', (ShownLink(1, 'base', Pose((6.0, 0.0, 0.0))),)),))
-    )
-    return models
+    return models_with(model('robot', 1, position=(6.0, 0.0, 0.0), links=('base',)))
 
 
 @pytest.fixture
@@ -49,13 +36,6 @@ def panel(site, maps, models):
     panel.close()
 
 
-@pytest.fixture
-def browser(site, panel):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control(MAP))
-        yield browser
-
-
 def position(browser, node=NODE):
     return browser.nodes.get(node, [None, None])[1]
 
@@ -64,7 +44,7 @@ def test_a_map_lies_where_the_robot_takes_it_to_be(browser, maps, models):
     browser.choose(MAP, True)
     browser.wait_until(lambda: position(browser) == [1.0, 0.0, 0.0])
     browser.wait_until(lambda: '4 x 2 cells' in browser.texts())
-    models.move(ShownMotion(0.0, 0.0, 0, False, {1: Pose((6.5, 0.0, 0.0))}))
+    models.move(clock(_1=Pose((6.5, 0.0, 0.0))))
     browser.wait_until(lambda: position(browser) == [1.5, 0.0, 0.0])
     maps.place = 'base', Pose((-5.5, 0.0, 0.0))  # the robot has corrected where it is
     browser.wait_until(lambda: position(browser) == [1.0, 0.0, 0.0])
@@ -74,7 +54,7 @@ def test_a_map_covers_its_cells_from_its_origin_on(browser):
     browser.choose(MAP, True)
     grid = f'{NODE}/grid'
     browser.wait_until(lambda: position(browser, grid) not in (None, [0.0, 0.0, 0.0]))
-    (message,) = [m for m in browser.messages if m['type'] == 'ImageMessage']
+    (message,) = browser.received('ImageMessage')
     assert (message['props']['render_width'], message['props']['render_height']) == (2.0, 1.0)
     # The centre is half of 2 m by 1 m from the origin, along axes that are turned by 0.5 rad.
     cos, sin = math.cos(0.5), math.sin(0.5)
@@ -86,11 +66,7 @@ def test_a_map_covers_its_cells_from_its_origin_on(browser):
 def test_without_tf_a_map_is_the_worlds(browser, maps):
     maps.place = None
     browser.choose(MAP, True)
-    browser.wait_until(
-        lambda: any(
-            "TF does not connect its frame 'map' with a robot" in text for text in browser.texts()
-        )
-    )
+    browser.wait_until(lambda: browser.shows("TF does not connect its frame 'map' with a robot"))
     assert position(browser) == [0.0, 0.0, 0.0]
     maps.place = 'base', Pose((-5.0, 0.0, 0.0))  # TF was only late
     browser.wait_until(lambda: position(browser) == [1.0, 0.0, 0.0])

@@ -4,7 +4,6 @@ import time
 
 import numpy as np
 import pytest
-from support.browser import Browser
 from support.window import FakeSignals, clock
 
 from rosbots_description.web.plot import PlotPanel
@@ -18,11 +17,6 @@ def signals():
 
 
 @pytest.fixture
-def complaints():
-    return []
-
-
-@pytest.fixture
 def panel(site, signals, complaints):
     panel = PlotPanel(site, signals, complaints.append)
     panel.open()
@@ -30,13 +24,6 @@ def panel(site, signals, complaints):
     panel.move(clock(10.0))
     yield panel
     panel.close()
-
-
-@pytest.fixture
-def browser(site, panel):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control('Add curve'))
-        yield browser
 
 
 def add(browser, signals, *curves):
@@ -58,16 +45,9 @@ def plots(browser):
 
 def test_a_curve_is_chosen_by_topic_and_field(browser, signals):
     browser.choose('Topic', '/odom')
-    browser.wait_until(
-        lambda: 'twist/twist/linear/x' in browser.controls[browser.control('Field')][1]['options']
-    )
+    browser.wait_until(lambda: 'twist/twist/linear/x' in browser.props('Field')['options'])
     browser.choose('Field', 'twist/twist/linear/x')
-    browser.wait_until(
-        lambda: any(
-            m['type'] == 'GuiUpdateMessage' and m['updates'].get('value') == SPEED
-            for m in browser.messages
-        )
-    )
+    browser.wait_until(lambda: browser.value('Curve') == SPEED)
     browser.click('Add curve')
     browser.wait_until(lambda: signals.open_curves == {SPEED})
 
@@ -91,11 +71,8 @@ def test_the_box_of_a_curve_stays_while_others_come_and_go(browser, signals):
     browser.choose(TRUTH, False)
     browser.wait_until(lambda: signals.open_curves == {SPEED} and not browser.control(TRUTH))
     assert browser.control(SPEED) == box  # a click on it was not lost
-    assert all(
-        message['props']['order'] < browser.controls[box][1]['order']
-        for message in browser.messages
-        if message['type'] == 'GuiUplotMessage'
-    )
+    order = browser.props(SPEED)['order']
+    assert all(plot['props']['order'] < order for plot in browser.received('GuiUplotMessage'))
 
 
 def test_a_curve_is_added_once(browser, signals):
@@ -103,16 +80,6 @@ def test_a_curve_is_added_once(browser, signals):
     browser.click('Add curve')
     browser.read(0.2)
     assert len(plots(browser)) == 1
-
-
-def test_nothing_is_read_while_nobody_looks(browser, signals, panel):
-    add(browser, signals, SPEED)
-    panel.close()
-    assert signals.open_curves == set()
-    panel.refresh()  # it was late
-    assert signals.open_curves == set()
-    panel.open()
-    assert signals.open_curves == {SPEED}
 
 
 def test_what_cannot_be_plotted_is_told(browser, signals, complaints):

@@ -122,8 +122,8 @@ def files(browser, path):
     """Return the contents of all files that a browser got below a path."""
     return [
         bytes(m['props']['glb_data'])
-        for m in browser.messages
-        if m['type'] == 'GlbMessage' and m['name'].startswith(path)
+        for m in browser.received('GlbMessage')
+        if m['name'].startswith(path)
     ]
 
 
@@ -132,12 +132,7 @@ def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, si
     browser.choose('Contacts and forces', True)
     browser.wait_until(lambda: simulator.contacts.show)
     up, down = (0.0, 0.0, 10.0), (5.0, 0.0, -10.0)
-    simulator.contacts.show(
-        [
-            ShownContact((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), up),
-            ShownContact((2.0, 0.0, 0.0), (0.0, 0.0, 1.0), down),
-        ]
-    )
+    simulator.contacts.show([contact(1.0, up), contact(2.0, down)])
     browser.wait_until(lambda: '/contacts/forces' in browser.nodes)
     points = site.scene.get_handle_by_name('/contacts/points')
     lines = site.scene.get_handle_by_name('/contacts/forces')
@@ -145,13 +140,13 @@ def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, si
     # The greatest force is half a metre long; both point up, as on the upper bodies.
     assert browser.value('Force per metre [N]') == 20.0
     assert np.allclose(lines.points[:, 1] - points.points, [(0.0, 0.0, 0.5), (-0.25, 0.0, 0.5)])
-    simulator.contacts.show([ShownContact((3.0, 0.0, 0.0), (0.0, 0.0, 1.0), up)])
+    simulator.contacts.show([contact(3.0, up)])
     assert np.allclose(points.points, [(3.0, 0.0, 0.0)])
     browser.choose('Force per metre [N]', 5.0)
     browser.wait_until(lambda: length_after(simulator, lines, up) == pytest.approx(2.0))
     simulator.contacts.show([])
     browser.wait_until(lambda: '/contacts/points' not in browser.nodes)
-    simulator.contacts.show([ShownContact((3.0, 0.0, 0.0), (0.0, 0.0, 1.0), up)])  # it jumped
+    simulator.contacts.show([contact(3.0, up)])  # it jumped
     browser.wait_until(lambda: '/contacts/points' in browser.nodes)
     lines = site.scene.get_handle_by_name('/contacts/forces')
     assert length_after(simulator, lines, up) == pytest.approx(2.0)  # as it was set
@@ -159,8 +154,12 @@ def test_contacts_are_asked_for_only_while_they_are_shown(browser, simulator, si
     browser.wait_until(lambda: simulator.contacts.show is None)
 
 
+def contact(x, force):
+    return ShownContact((x, 0.0, 0.0), (0.0, 0.0, 1.0), force)
+
+
 def length_after(simulator, lines, force):
-    simulator.contacts.show([ShownContact((3.0, 0.0, 0.0), (0.0, 0.0, 1.0), force)])
+    simulator.contacts.show([contact(3.0, force)])
     return float(np.linalg.norm(lines.points[0, 1] - lines.points[0, 0]))
 
 
@@ -173,31 +172,16 @@ def test_nobody_who_looks_needs_contacts(browser, simulator, site, page):
         later.wait_until(lambda: simulator.contacts.show)
 
 
-def test_cameras_follow_the_selected_model_and_keep_their_offset(browser, simulator, page):
+def test_cameras_follow_the_selected_model_and_keep_the_offset(browser, client, simulator, page):
     simulator.change(SceneChange(True, (model('a', 1),)))
     selection(page).choose('a')
     browser.click('Follow the selection')
     browser.wait_until(lambda: browser.control('Stop following'))
     browser.send(CAMERA | {'position': [3.0, 0.0, 2.0], 'look_at': [1.0, 0.0, 1.0]})
-    browser.wait_until(lambda: page_camera(page) == (3.0, 0.0, 2.0))
+    browser.wait_until(lambda: tuple(client.camera.position) == (3.0, 0.0, 2.0))
     simulator.motion(clock(_1=Pose((10.0, 5.0, 0.0))))
-    browser.wait_until(
-        lambda: (
-            [m['position'] for m in browser.messages if m['type'] == 'SetCameraPositionMessage'][
-                -1:
-            ]
-            == [[12.0, 5.0, 1.0]]
-        )
-    )
-    assert [m['look_at'] for m in browser.messages if m['type'] == 'SetCameraLookAtMessage'][
-        -1
-    ] == [10.0, 5.0, 0.0]
+    browser.wait_until(lambda: browser.view() == ([12.0, 5.0, 1.0], [10.0, 5.0, 0.0]))
     told = len(browser.messages)
     simulator.motion(clock(_1=Pose((10.0, 5.0, 0.0001))))  # it rests
     browser.read()
     assert not [m for m in browser.messages[told:] if m['type'].startswith('SetCamera')]
-
-
-def page_camera(page):
-    (client,) = page._site.get_clients().values()
-    return tuple(client.camera.position)

@@ -14,11 +14,11 @@ import msgspec
 import pytest
 from support.browser import CAMERA, Browser
 from support.patience import PATIENCE, wait_until
-from support.window import FakeSimulator
+from support.window import FakeSimulator, serving
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from rosbots_description.sim.description import SceneChange
-from rosbots_description.web import Page, Site, gate
+from rosbots_description.web import Page, gate
 from rosbots_description.web.gate import MOST_CLIENTS, MOST_EARLY
 from rosbots_description.web.uploads import MAX_BYTES, OF_ONE
 
@@ -31,11 +31,9 @@ SOCKET = f'Upgrade: websocket\r\nConnection: Upgrade\r\n{KEY}'
 @pytest.fixture(scope='module')
 def served():
     """A page, and the simulator behind it."""
-    site = Site('127.0.0.1', 0, SECRET)
     simulator = FakeSimulator()
-    page = Page(site, simulator)
-    yield site, simulator, page
-    site.stop()
+    with serving('127.0.0.1', SECRET) as site:
+        yield site, simulator, Page(site, simulator)
 
 
 @pytest.fixture
@@ -52,8 +50,7 @@ def site(served):
             return (
                 browser.control('Pause')
                 and browser.control(UPLOAD)
-                and {'SetCameraPositionMessage'}
-                <= {message['type'] for message in browser.messages}
+                and browser.received('SetCameraPositionMessage')
             )
 
         browser.wait_until(is_shown)
@@ -238,89 +235,70 @@ def outside(said):
     assert b'Traceback' not in said
 
 
+encode = msgspec.msgpack.encode
+
+
+def message(kind, **fields):
+    return encode({'type': kind, **fields})
+
+
+def update(updates):
+    return message('GuiUpdateMessage', uuid='x', updates=updates)
+
+
+def picture(payload):
+    return message('GetRenderResponseMessage', payload=payload, render_uuid='x')
+
+
 MALFORMED = {
     'text': 'text',
     'empty': b'',
     'no msgpack': b'\xc1',
-    'a number': msgspec.msgpack.encode(1),
-    'a list': msgspec.msgpack.encode([1]),
-    'no type': msgspec.msgpack.encode({}),
+    'a number': encode(1),
+    'a list': encode([1]),
+    'no type': encode({}),
     'deep': b'\x91' * 100_000,
-    'cut off': msgspec.msgpack.encode(CAMERA)[:-3],
-    **{
-        name: msgspec.msgpack.encode(message)
-        for name, message in {
-            'unknown type': {'type': 'Nothing'},
-            'class of python': {'type': 'object'},
-            'base class': {'type': 'Message'},
-            'share': {'type': 'ShareUrlRequest'},
-            'script': {'type': 'RunJavascriptMessage', 'source': 'alert(1)'},
-            'notification': {'type': 'NotificationShowMessage', 'uuid': 'x', 'props': {}},
-            'theme': {'type': 'ThemeConfigurationMessage'},
-            'remove': {'type': 'RemoveSceneNodeMessage', 'name': '/models'},
-            'remove control': {'type': 'GuiRemoveMessage', 'uuid': 'x'},
-            'background': {'type': 'BackgroundImageMessage'},
-            'storage': {
-                'type': 'LocalStorageGetItemResponseMessage',
-                'value': 'x',
-                'error': None,
-                'request_uuid': 'x',
-            },
-            'form': {'type': 'GuiFormDirtyMessage', 'uuid': 'x'},
-            'camera without a field': {
-                name: value for name, value in CAMERA.items() if name != 'fov'
-            },
-            'camera with another field': {**CAMERA, 'client': 1},
-            'camera of text': {**CAMERA, 'position': 'abc'},
-            'camera of two numbers': {**CAMERA, 'position': [1.0, 2.0]},
-            'camera of a thousand': {**CAMERA, 'wxyz': [1.0] * 1000},
-            'camera of nothing': {**CAMERA, 'look_at': None},
-            'camera in a camera': {**CAMERA, 'look_at': [CAMERA] * 3},
-            'width of text': {**CAMERA, 'image_width': '100'},
-            'click without a ray': {'type': 'SceneNodeClickMessage', 'name': '/x'},
-            'long name': {
-                'type': 'TransformControlsDragStartMessage',
-                'name': 'x' * 5000,
-                'owner': '',
-            },
-            'large message': {
-                'type': 'GuiUpdateMessage',
-                'uuid': 'x',
-                'updates': {'value': 'x' * 2_000_000},
-            },
-            'other properties': {
-                'type': 'GuiUpdateMessage',
-                'uuid': 'x',
-                'updates': {'removed': True},
-            },
-            'callbacks': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {'update_cb': []}},
-            'no property': {'type': 'GuiUpdateMessage', 'uuid': 'x', 'updates': {}},
-            'two properties': {
-                'type': 'GuiUpdateMessage',
-                'uuid': 'x',
-                'updates': {'value': 1, 'sync_cb': None},
-            },
-            'picture that is none': {
-                'type': 'GetRenderResponseMessage',
-                'payload': b'GIF89a',
-                'render_uuid': 'x',
-            },
-            'picture of text': {
-                'type': 'GetRenderResponseMessage',
-                'payload': 'x',
-                'render_uuid': 'x',
-            },
-            'file for no button': {
-                'type': 'FileTransferStartUpload',
-                'source_component_uuid': 'x',
-                'transfer_uuid': 'x',
-                'filename': 'x',
-                'mime_type': '',
-                'part_count': 1,
-                'size_bytes': 1,
-            },
-        }.items()
-    },
+    'cut off': encode(CAMERA)[:-3],
+    'unknown type': message('Nothing'),
+    'class of python': message('object'),
+    'base class': message('Message'),
+    'share': message('ShareUrlRequest'),
+    'script': message('RunJavascriptMessage', source='alert(1)'),
+    'notification': message('NotificationShowMessage', uuid='x', props={}),
+    'theme': message('ThemeConfigurationMessage'),
+    'remove': message('RemoveSceneNodeMessage', name='/models'),
+    'remove control': message('GuiRemoveMessage', uuid='x'),
+    'background': message('BackgroundImageMessage'),
+    'storage': message(
+        'LocalStorageGetItemResponseMessage', value='x', error=None, request_uuid='x'
+    ),
+    'form': message('GuiFormDirtyMessage', uuid='x'),
+    'camera without a field': encode(dict(list(CAMERA.items())[:-1])),
+    'camera with another field': encode({**CAMERA, 'client': 1}),
+    'camera of text': encode({**CAMERA, 'position': 'abc'}),
+    'camera of two numbers': encode({**CAMERA, 'position': [1.0, 2.0]}),
+    'camera of a thousand': encode({**CAMERA, 'wxyz': [1.0] * 1000}),
+    'camera of nothing': encode({**CAMERA, 'look_at': None}),
+    'camera in a camera': encode({**CAMERA, 'look_at': [CAMERA] * 3}),
+    'width of text': encode({**CAMERA, 'image_width': '100'}),
+    'click without a ray': message('SceneNodeClickMessage', name='/x'),
+    'long name': message('TransformControlsDragStartMessage', name='x' * 5000, owner=''),
+    'large message': update({'value': 'x' * 2_000_000}),
+    'other properties': update({'removed': True}),
+    'callbacks': update({'update_cb': []}),
+    'no property': update({}),
+    'two properties': update({'value': 1, 'sync_cb': None}),
+    'picture that is none': picture(b'GIF89a'),
+    'picture of text': picture('x'),
+    'file for no button': message(
+        'FileTransferStartUpload',
+        source_component_uuid='x',
+        transfer_uuid='x',
+        filename='x',
+        mime_type='',
+        part_count=1,
+        size_bytes=1,
+    ),
 }
 
 
@@ -341,10 +319,9 @@ def test_a_message_larger_than_any_picture_ends_its_connection(browser):
 
 BAD = (math.nan, math.inf, -math.inf, 1e300)
 CAMERAS = [
-    *[{name: [number, 0.0, 0.0]} for number in BAD for name in ('position', 'look_at')],
-    *[{'wxyz': [number, 0.0, 0.0, 0.0]} for number in BAD],
-    *[{'up_direction': [number, 0.0, 0.0]} for number in BAD],
-    *[{name: number} for number in BAD for name in ('fov', 'near', 'far')],
+    *[{name: [bad, 0.0, 0.0]} for bad in BAD for name in ('position', 'look_at', 'up_direction')],
+    *[{'wxyz': [bad, 0.0, 0.0, 0.0]} for bad in BAD],
+    *[{name: bad} for bad in BAD for name in ('fov', 'near', 'far')],
     {'wxyz': [0.0] * 4},
     {'up_direction': [0.0] * 3},
     {'look_at': CAMERA['position']},
@@ -363,7 +340,7 @@ CAMERAS = [
 @pytest.mark.parametrize('change', CAMERAS, ids=str)
 def test_a_camera_that_looks_nowhere_is_ignored(browser, site, change):
     browser.send({**CAMERA, **change})
-    browser.wait_until(lambda: any('of this browser' in note for note in browser.notes()))
+    browser.wait_until(lambda: browser.noted('of this browser'))
     _, client = max(site.get_clients().items())  # the newest; before, it might not be listed yet
     assert all(map(math.isfinite, client.camera.position))
     browser.look_at([1.0, 2.0, 3.0])
@@ -393,18 +370,12 @@ VALUES = [
     ('Steps', 10**9),
     ('Size [m]', [math.nan, 1.0, 1.0]),
     ('Size [m]', [1.0, math.inf, 1.0]),
-    ('Shape mass [kg]', math.nan),
-    ('Force [N]', [0.0, 0.0, math.inf]),
     ('Duration [s]', -1.0),
-    ('Duration [s]', math.nan),
     ('Speed', '100x'),
     ('Kind', 'sphere; rm'),
     ('Find', 'x' * 1001),
-    ('Curve', 'x' * 1001),
     ('Force per metre [N]', 0.0),
-    ('Visuals', ''),
     ('Model path', '../../etc/passwd'),
-    ('Parameter', '/secret'),
     ('Light', '__proto__'),
 ]
 
@@ -413,7 +384,7 @@ VALUES = [
 def test_a_value_that_a_control_cannot_have_is_refused_in_a_sentence(browser, label, value):
     before = browser.value(label)
     browser.choose(label, value)
-    browser.wait_until(lambda: any(f"'{label}'" in note for note in browser.notes()))
+    browser.wait_until(lambda: browser.noted(f"'{label}'"))
     assert browser.value(label) == before
 
 
@@ -445,40 +416,11 @@ def test_a_value_of_another_type_ends_the_connection(browser, label, value):
         browser.wait_until(lambda: False)
 
 
-def start(browser, number, size=1000, count=2, **more):
-    """Begin a file."""
-    browser.send(
-        {
-            'type': 'FileTransferStartUpload',
-            'filename': 'x',
-            'mime_type': '',
-            'source_component_uuid': browser.control(UPLOAD),
-            'transfer_uuid': str(number),
-            'part_count': count,
-            'size_bytes': size,
-            **more,
-        }
-    )
-
-
-def part(browser, number, index=0, content=b'x'):
-    """Send a part of it."""
-    browser.send(
-        {
-            'type': 'FileTransferPart',
-            'source_component_uuid': browser.control(UPLOAD),
-            'transfer_uuid': str(number),
-            'part_index': index,
-            'content': content,
-        }
-    )
-
-
 def test_unfinished_files_are_few_and_go_with_their_browser(browser, site):
     for number in range(60):
-        start(browser, number, MAX_BYTES)
-        part(browser, number, 0, 500_000 * b'x')
-    browser.wait_until(lambda: any('at once' in note for note in browser.notes()))
+        browser.begin_file(UPLOAD, str(number), MAX_BYTES, 2)
+        browser.send_part(UPLOAD, str(number), 0, 500_000 * b'x')
+    browser.wait_until(lambda: browser.noted('at once'))
     assert len(site._gate._uploads) <= OF_ONE
     browser._connection.close()
     wait_until(lambda: not len(site._gate._uploads), 'the end of the uploads')
@@ -486,44 +428,42 @@ def test_unfinished_files_are_few_and_go_with_their_browser(browser, site):
 
 @pytest.mark.parametrize(('count', 'size'), [(-1, 10), (10**9, 10), (2, -1), (1, 2**60)])
 def test_a_file_of_impossible_size_is_not_begun(browser, site, count, size):
-    start(browser, 1, size, count)
+    browser.begin_file(UPLOAD, 'x', size, count)
     with suppress(ConnectionClosed):
         browser.wait_until(
-            lambda: any(
-                "'x' has more than" in note or 'of this browser' in note for note in browser.notes()
-            )
+            lambda: browser.noted("'x' has more than") or browser.noted('of this browser')
         )
     assert len(site._gate._uploads) == 0
 
 
 @pytest.mark.parametrize('index', [-1, 2, 2**29, 0])
 def test_a_part_that_is_none_ends_the_connection(browser, index):
-    start(browser, 1)
-    part(browser, 1, 0)
-    part(browser, 1, index)
+    browser.begin_file(UPLOAD, 'x', 1000, 2)
+    browser.send_part(UPLOAD, 'x')
+    browser.send_part(UPLOAD, 'x', index)
     with pytest.raises(ConnectionClosed):
         browser.wait_until(lambda: False)
 
 
 def test_parts_of_a_file_of_another_browser_are_ignored(browser, site, served):
-    start(browser, 'mine', 2)
-    part(browser, 'mine', 0, b'a')
+    browser.begin_file(UPLOAD, 'mine', 2, 2)
+    browser.send_part(UPLOAD, 'mine', 0, b'a')
     with Browser(site.address) as other:
         other.wait_until(lambda: other.control(UPLOAD))
-        part(other, 'mine', 1, b'!')
+        other.send_part(UPLOAD, 'mine', 1, b'!')
         other.choose('Steps', 5)  # after the part
         browser.wait_until(lambda: browser.value('Steps') == 5)
         other.choose('Steps', 1)
-    part(browser, 'mine', 1, b'b')
-    browser.wait_until(lambda: any(what == 'insert' for what, *_ in served[1].told))
-    (text,) = (one[1] for one in served[1].told if one[0] == 'insert')
-    assert text.xml == 'x: ab'
+    browser.send_part(UPLOAD, 'mine', 1, b'b')
+    browser.wait_until(lambda: served[1].done('insert'))
+    ((_, text, *_),) = served[1].done('insert')
+    assert text.xml == 'mine: ab'
 
 
 def test_name_of_a_file_is_one_line_of_text(browser, served):
     browser.upload(UPLOAD, 'a\n\u202e\0' + 'x' * 900, b'x')
-    browser.wait_until(lambda: any(what == 'insert' for what, *_ in served[1].told))
-    (text,) = (one[1] for one in served[1].told if one[0] == 'insert')
+    browser.wait_until(lambda: served[1].done('insert'))
+    ((_, text, *_),) = served[1].done('insert')
     name = text.xml.partition(':')[0]
     assert len(name) <= 300
     assert name.startswith('a \ufffd\ufffdxx')
@@ -567,7 +507,6 @@ def test_a_flood_of_messages_is_slowed_down_and_the_page_answers_others(browser,
     for _ in range(8000):
         browser.look_at([1.0, 2.0, 3.0])
     with Browser(site.address) as other:
-        other.wait_until(lambda: other.control('Pause'))
         other.click('Pause')
         other.wait_until(lambda: ('pause',) in served[1].told)
 
@@ -592,18 +531,12 @@ def test_what_is_done_in_the_first_moment_of_a_connection_is_not_lost(browser, s
     released = threading.Event()
     with Reconnected(site, browser) as early:
         early.press('space')
-        early.send(
-            {
-                'type': 'GuiUpdateMessage',
-                'uuid': browser.control('Speed'),
-                'updates': {'value': '10x'},
-            }
-        )
+        early.update(browser.control('Speed'), '10x')
         # The server reads all of it at once.
         site._websock_server._background_event_loop.call_soon_threadsafe(released.wait)
         early.let()
         released.set()
-        early.wait_until(lambda: {'pause', 'set_speed'} <= {what for what, *_ in served[1].told})
+        early.wait_until(lambda: served[1].done('pause') and served[1].done('set_speed'))
 
 
 def test_a_file_by_the_button_of_another_browser_ends_the_connection(browser, site, served):
@@ -613,7 +546,7 @@ def test_a_file_by_the_button_of_another_browser_ends_the_connection(browser, si
             other.let()
             other.wait_until(lambda: False)
     assert closed.value.rcvd.reason == 'This is no button for files.'
-    assert not [one for one in served[1].told if one[0] == 'insert']
+    assert not served[1].done('insert')
 
 
 def test_what_is_done_before_the_page_says_where_it_looks_is_done_after_that(browser, site, served):
@@ -623,7 +556,7 @@ def test_what_is_done_before_the_page_says_where_it_looks_is_done_after_that(bro
         early.click('Step')
         early.held.append(camera)
         early.let()
-        early.wait_until(lambda: {'pause', 'step'} <= {what for what, *_ in served[1].told})
+        early.wait_until(lambda: served[1].done('pause') and served[1].done('step'))
 
 
 def test_what_is_done_without_ever_looking_is_not_kept_for_long(browser, site, served):
@@ -634,5 +567,5 @@ def test_what_is_done_without_ever_looking_is_not_kept_for_long(browser, site, s
         early.held.append(camera)
         early.click('Step')
         early.let()
-        early.wait_until(lambda: 'step' in {what for what, *_ in served[1].told})
+        early.wait_until(lambda: served[1].done('step'))
     assert len(served[1].told) <= MOST_EARLY + 1

@@ -2,18 +2,10 @@
 
 import numpy as np
 import pytest
-from support.browser import Browser
-from support.window import FakeTopics
+from support.window import FakeTopics, clock, model, models_with
 
 from rosbots_description.sim.core import Pose
-from rosbots_description.sim.description import (
-    SceneChange,
-    ShownLink,
-    ShownModel,
-    ShownMotion,
-    ShownReading,
-)
-from rosbots_description.web.models import Models
+from rosbots_description.sim.description import ShownReading
 from rosbots_description.web.topics import TopicPanel
 
 NONE = 'No sensor publishes.'
@@ -28,17 +20,10 @@ def sensors():
 
 @pytest.fixture
 def models():
-    models = Models()
-    models.apply(
-        SceneChange(
-            True,
-            tuple(
-                ShownModel(name, (ShownLink(number, 'base', Pose((float(number), 0.0, 0.0))),))
-                for number, name in enumerate(('r1', 'r2'), 1)
-            ),
-        )
+    return models_with(
+        model('r1', 1, position=(1.0, 0.0, 0.0), links=('base',)),
+        model('r2', 2, position=(2.0, 0.0, 0.0), links=('base',)),
     )
-    return models
 
 
 @pytest.fixture
@@ -48,13 +33,6 @@ def panel(site, sensors, models):
     panel.refresh()
     yield panel
     panel.close()
-
-
-@pytest.fixture
-def browser(site, panel):
-    with Browser(site.address) as browser:
-        browser.wait_until(lambda: browser.control(SCAN) and browser.control(EYE))
-        yield browser
 
 
 def check(browser, sensors, *topics):
@@ -75,18 +53,11 @@ def test_nothing_is_read_while_nobody_looks(browser, sensors, panel):
     panel.close()
     assert sensors.open_topics == set()
     panel.refresh()  # it was late
+    browser.choose(EYE, True)  # so was this
+    browser.wait_until(lambda: EYE in panel._checked)
     assert sensors.open_topics == set()
     panel.open()
-    assert sensors.open_topics == {SCAN}
-
-
-def test_what_is_checked_after_all_have_left_waits(browser, sensors, panel):
-    panel.close()
-    browser.choose(SCAN, True)
-    browser.wait_until(lambda: SCAN in panel._checked)
-    assert sensors.open_topics == set()
-    panel.open()
-    assert sensors.open_topics == {SCAN}
+    assert sensors.open_topics == {SCAN, EYE}
 
 
 def test_a_sensor_that_returns_is_read_again(browser, sensors, panel):
@@ -111,7 +82,7 @@ def test_boxes_stay_in_order_when_other_sensors_come_and_go(browser, sensors, pa
     browser.wait_until(lambda: browser.control('/imu') and not browser.control(EYE))
 
     def place(topic):
-        return browser.controls[browser.control(topic)][1]['order']
+        return browser.props(topic)['order']
 
     browser.wait_until(lambda: place('/imu') < place(SCAN))
     assert browser.control(SCAN) == box
@@ -120,13 +91,13 @@ def test_boxes_stay_in_order_when_other_sensors_come_and_go(browser, sensors, pa
 
 
 def test_shapes_are_where_the_robot_is(browser, sensors, models):
-    models.move(ShownMotion(0.0, 0.0, 0, False, {1: Pose((5.0, 0.0, 0.0))}))
+    models.move(clock(_1=Pose((5.0, 0.0, 0.0))))
     check(browser, sensors, SCAN)
     sensors.readings[SCAN] = ShownReading(
         'laser', points=POINTS, words='one ray', lines=np.zeros((1, 2, 3), np.float32)
     )
     frame = '/readings/\u2215scan'
-    browser.wait_until(lambda: browser.nodes.get(frame, [0, 0])[1] == [5.0, 0.0, 0.5])
+    browser.wait_until(lambda: browser.nodes[frame][1] == [5.0, 0.0, 0.5])
     browser.wait_until(lambda: {f'{frame}/points', f'{frame}/lines'} <= browser.nodes.keys())
     browser.wait_until(lambda: 'one ray' in browser.texts())
     assert set(sensors.links) == {'base', 'r1/base', 'r2/base'}
@@ -138,36 +109,28 @@ def test_newer_shapes_take_the_place_of_older_ones(browser, sensors, site):
     check(browser, sensors, SCAN)
     name = '/readings/\u2215scan/points'
 
-    def sent(kind, part=None):
-        return len(
-            [
-                m
-                for m in browser.messages
-                if m['type'] == kind
-                and m['name'] == name
-                and (part is None or part in m['updates'])
-            ]
-        )
+    def made():
+        return sum(m['name'] == name for m in browser.received('PointCloudMessage'))
+
+    def updated():
+        updates = browser.received('SceneNodeUpdateMessage')
+        return sum(m['name'] == name and 'points' in m['updates'] for m in updates)
 
     sensors.readings[SCAN] = ShownReading('laser', points=POINTS)
-    browser.wait_until(lambda: sent('PointCloudMessage') == 1)
+    browser.wait_until(lambda: made() == 1)
     sensors.readings[SCAN] = ShownReading('laser', points=np.repeat(POINTS, 3, 0))
-    browser.wait_until(lambda: sent('SceneNodeUpdateMessage', 'points') == 1)
+    browser.wait_until(lambda: updated() == 1)
     assert site.scene.get_handle_by_name(name).points.shape == (3, 3)
     sensors.readings[SCAN] = ShownReading('laser', points=POINTS, colours=np.uint8([[1, 2, 3]]))
-    browser.wait_until(lambda: sent('PointCloudMessage') == 2)
+    browser.wait_until(lambda: made() == 2)
     assert site.scene.get_handle_by_name(name).colors.tolist() == [[1, 2, 3]]
 
 
 def test_of_links_of_one_name_that_of_the_topics_robot_is_meant(browser, sensors):
     check(browser, sensors, EYE)
     sensors.readings[EYE] = ShownReading('eye', points=POINTS)
-    browser.wait_until(
-        lambda: (
-            browser.nodes.get('/readings/\u2215r2\u2215eye\u2215image', [0, 0])[1]
-            == [2.0, 0.0, 0.5]
-        )
-    )
+    frame = '/readings/\u2215r2\u2215eye\u2215image'
+    browser.wait_until(lambda: browser.nodes[frame][1] == [2.0, 0.0, 0.5])
 
 
 def test_shapes_in_the_world_need_no_link(browser, sensors):
@@ -182,10 +145,8 @@ def test_a_frame_that_nobody_knows_is_told_of(browser, sensors):
     sensors.place = None
     sensors.readings[SCAN] = ShownReading('moon', points=POINTS, words='one ray')
     browser.wait_until(
-        lambda: any(
-            'one ray\nIt is not in the scene: TF does not connect its '
-            "frame 'moon' with a link." in text
-            for text in browser.texts()
+        lambda: browser.shows(
+            "one ray\nIt is not in the scene: TF does not connect its frame 'moon' with a link."
         )
     )
     assert '/readings/\u2215scan' not in browser.nodes
@@ -200,9 +161,7 @@ def test_pictures_are_shown_below_their_box(browser, sensors):
     browser.wait_until(lambda: 'GuiImageMessage' in {kind for kind, _ in browser.controls.values()})
     sensors.readings[EYE] = ShownReading(picture=np.full((4, 6, 3), 200, np.uint8))
     browser.wait_until(
-        lambda: any(
-            m['type'] == 'GuiUpdateMessage' and '_data' in m['updates'] for m in browser.messages
-        )
+        lambda: any('_data' in m['updates'] for m in browser.received('GuiUpdateMessage'))
     )
 
 

@@ -3,7 +3,7 @@
 import pytest
 from support.window import model, selection
 
-from rosbots_description.sim.description import SceneChange, ShownModel
+from rosbots_description.sim.description import SceneChange
 from rosbots_description.web import tree
 
 
@@ -17,21 +17,14 @@ def rows(browser):
     return [props['label'] for props in sorted(buttons, key=lambda props: props['order'])]
 
 
-def robot(name, *links):
-    (link,) = model(name, 1).links
-    return ShownModel(
-        name, tuple(type(link)(number, one, link.pose) for number, one in enumerate(links))
-    )
-
-
 def test_models_come_and_go_and_a_click_selects(browser, simulator, page):
-    simulator.change(SceneChange(True, (model('b', 1), robot('a', 'base', 'wheel'))))
+    simulator.change(SceneChange(True, (model('b', 1), model('a', 2, links=('base', 'wheel')))))
     browser.wait_until(lambda: rows(browser) == ['b', 'a'])
     browser.click('a')
     browser.wait_until(lambda: rows(browser) == ['a', '└ base', '└ wheel', 'b'])
     browser.click('└ wheel')
     browser.wait_until(lambda: (selection(page).model, selection(page).link) == ('a', 'wheel'))
-    browser.wait_until(lambda: browser.controls[browser.control('└ wheel')][1]['color'] == 'orange')
+    browser.wait_until(lambda: browser.props('└ wheel')['color'] == 'orange')
     before = len(browser.controls)
     simulator.change(SceneChange(removed=('a',)))
     browser.wait_until(lambda: rows(browser) == ['b'])
@@ -40,7 +33,7 @@ def test_models_come_and_go_and_a_click_selects(browser, simulator, page):
     browser.click('c')
     browser.wait_until(lambda: selection(page).model == 'c')
     # No button is ever removed, so the page has none to miss.
-    assert not [m for m in browser.messages if m['type'] == 'GuiRemoveMessage']
+    assert not browser.received('GuiRemoveMessage')
     browser.wait_until(lambda: rows(browser) == ['c', '└ link', 'b'])
     assert len(browser.controls) == before
 
@@ -49,17 +42,19 @@ def test_a_large_world_is_searched(browser, simulator, page, monkeypatch):
     monkeypatch.setattr(tree, 'MOST', 5)
     simulator.change(SceneChange(True, tuple(model(f'box_{n}', n) for n in range(100))))
     browser.wait_until(lambda: rows(browser) == [f'box_{n}' for n in range(5)])
-    assert any('and 95 more' in text for text in browser.texts())
+    assert browser.shows('and 95 more')
     browser.choose('Find', 'BOX_77')
     browser.wait_until(lambda: rows(browser) == ['box_77'])
     selection(page).choose('box_3')
     browser.wait_until(lambda: rows(browser) == ['box_3', 'box_77'])
-    assert not any('more' in text for text in browser.texts())
+    assert not browser.shows('more')
 
 
 @pytest.mark.parametrize('part', ['wheel', 'WHEEL'])
 def test_links_of_the_selected_model_are_found(browser, simulator, page, part):
-    simulator.change(SceneChange(True, (robot('a', 'base', 'wheel_left'), model('b', 9))))
+    simulator.change(
+        SceneChange(True, (model('a', 1, links=('base', 'wheel_left')), model('b', 9)))
+    )
     selection(page).choose('a')
     browser.wait_until(lambda: browser.control('└ base'))
     browser.choose('Find', part)

@@ -19,17 +19,12 @@ def looking(browser, simulator, page):
     simulator.change(SceneChange(True, (model('a', 1), model('b', 2), model('ground', 3, Plane()))))
     simulator.motion(clock(_1=Pose((0.0, 0.0, 0.0)), _2=Pose((10.0, 0.0, 0.0))))
     browser.wait_until(lambda: '/models/b/link/0 v' in browser.nodes)
-    browser.wait_until(
-        lambda: (
-            '/models/b/link' in browser.nodes
-            and browser.nodes['/models/b/link'][1] == [10.0, 0.0, 0.0]
-        )
-    )
+    browser.wait_until(lambda: browser.nodes['/models/b/link'][1] == [10.0, 0.0, 0.0])
     browser.wait_until(lambda: page._ground._expected)
     catch_up(browser, page, 'told')
-    report(browser, *told(browser))
+    report(browser, *browser.view())
     browser.wait_until(lambda: not page._ground._expected)
-    browser.send(CAMERA | {'position': [0.0, 0.0, 50.0], 'look_at': [0.0, 0.0, 0.0]})
+    report(browser, (0.0, 0.0, 50.0), (0.0, 0.0, 0.0))
     browser.wait_until(lambda: browser.control('Home'))
     catch_up(browser, page, 'begin')
     return browser
@@ -45,28 +40,14 @@ def catch_up(browser, page, word):
     browser.wait_until(lambda: word in browser.notes())
 
 
-def told(browser):
-    """Return eye and target that the page has told a browser last."""
-    return tuple(
-        next(
-            np.array(message[key])
-            for message in reversed(browser.messages)
-            if message['type'] == kind
-        )
-        for key, kind in (
-            ('position', 'SetCameraPositionMessage'),
-            ('look_at', 'SetCameraLookAtMessage'),
-        )
-    )
-
-
 def turned(browser, page, act):
     """Return eye and target after an act."""
     browser.messages.clear()
     act()
-    browser.wait_until(lambda: any(m['type'] == 'SetCameraLookAtMessage' for m in browser.messages))
+    browser.wait_until(lambda: browser.received('SetCameraLookAtMessage'))
     catch_up(browser, page, 'turned')
-    return told(browser)
+    eye, target = browser.view()
+    return np.array(eye), np.array(target)
 
 
 def test_the_top_view_shows_everything_but_planes(looking, page):
@@ -84,15 +65,10 @@ def test_a_view_from_the_front_is_ahead(looking, page):
     assert eye[2] > target[2]
 
 
-def test_what_is_selected_is_gone_to_from_where_one_is(looking, page):
+def test_what_is_selected_is_gone_to_from_where_one_is(looking, client, page):
     selection(page).choose('b')
-    looking.send(CAMERA | {'position': [0.0, -20.0, 2.0], 'look_at': [0.0, 0.0, 2.0]})
-    looking.wait_until(
-        lambda: (
-            tuple(next(iter(page._site.get_clients().values())).camera.position)
-            == (0.0, -20.0, 2.0)
-        )
-    )
+    report(looking, (0.0, -20.0, 2.0), (0.0, 0.0, 2.0))
+    looking.wait_until(lambda: tuple(client.camera.position) == (0.0, -20.0, 2.0))
     eye, target = turned(looking, page, lambda: looking.press('G'))
     assert target[:2] == pytest.approx([10.0, 0.0], abs=0.05)
     assert (eye - target)[[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-6)
@@ -119,7 +95,7 @@ def test_nothing_to_go_to_is_no_fault(looking, page):
     looking.messages.clear()
     looking.press('G')
     turned(looking, page, lambda: looking.press('T'))
-    assert sum(m['type'] == 'SetCameraPositionMessage' for m in looking.messages) == 1
+    assert len(looking.received('SetCameraPositionMessage')) == 1
 
 
 def test_a_double_click_goes_to_the_model_and_keeps_it_selected(looking, page, monkeypatch):
@@ -134,39 +110,31 @@ def test_a_double_click_goes_to_the_model_and_keeps_it_selected(looking, page, m
 def test_a_camera_below_the_ground_is_lifted_above_it(looking, page):
     ground = 1.0  # [m] height of the fake's
     eye, target = turned(
-        looking,
-        page,
-        lambda: looking.send(CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [1.0, 0.0, 0.0]}),
+        looking, page, lambda: report(looking, (0.0, -20.0, -3.0), (1.0, 0.0, 0.0))
     )
     assert eye == pytest.approx([0.0, -20.0, ground + CLEARANCE])
     assert target == pytest.approx([1.0, 0.0, 0.0])
 
 
 def test_a_camera_that_looks_straight_up_from_below_looks_down_from_above(looking, page):
-    eye, target = turned(
-        looking,
-        page,
-        lambda: looking.send(CAMERA | {'position': [0.0, 0.0, -3.0], 'look_at': [0.0, 0.0, 0.0]}),
-    )
+    eye, target = turned(looking, page, lambda: report(looking, (0.0, 0.0, -3.0), (0.0, 0.0, 0.0)))
     assert eye[2] > target[2]
 
 
-def test_without_a_ground_a_camera_may_be_anywhere(looking, page, simulator):
+def test_without_a_ground_a_camera_may_be_anywhere(looking, client, page, simulator):
     simulator.change(SceneChange(removed=('ground',)))
     looking.messages.clear()
-    looking.send(CAMERA | {'position': [0.0, -20.0, -3.0], 'look_at': [0.0, 0.0, 0.0]})
-    looking.wait_until(
-        lambda: next(iter(page._site.get_clients().values())).camera.position[2] == -3.0
-    )
+    report(looking, (0.0, -20.0, -3.0), (0.0, 0.0, 0.0))
+    looking.wait_until(lambda: client.camera.position[2] == -3.0)
     catch_up(looking, page, 'below')
-    assert not [m for m in looking.messages if m['type'] == 'SetCameraPositionMessage']
+    assert not looking.received('SetCameraPositionMessage')
 
 
 def test_a_report_from_before_the_first_view_is_no_reason_to_leave_it(browser, simulator, page):
     simulator.change(SceneChange(True, (model('a', 1), model('ground', 3, Plane()))))
     browser.wait_until(lambda: page._ground._expected)
     catch_up(browser, page, 'told')
-    first = told(browser)
+    first = browser.view()
     below = turned(browser, page, lambda: report(browser, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0)))
     for found, wanted in zip(below, first, strict=True):
         assert found == pytest.approx(wanted)
