@@ -12,7 +12,8 @@ def _link(name, mass, moment, shape='', origin=''):
     )
 
 
-def _transmission(joint, interface):
+def transmission(joint, interface):
+    """Return a simple transmission of a joint with an interface: Effort, Position or Velocity."""
     return (
         f'<transmission name="{joint}_t"><type>transmission_interface/SimpleTransmission</type>'
         f'<joint name="{joint}"><hardwareInterface>hardware_interface/{interface}JointInterface'
@@ -33,7 +34,7 @@ def car(steered=('front_left', 'front_right'), driven=('rear_left', 'rear_right'
                 f'<child link="{name}_carrier"/><origin xyz="{place}"/><axis xyz="0 0 1"/>'
                 '<limit lower="-1" upper="1" effort="20" velocity="5"/></joint>'
             )
-            parts.append(_transmission(f'{name}_steer', 'Position'))
+            parts.append(transmission(f'{name}_steer', 'Position'))
             parent, place = f'{name}_carrier', '0 0 0'
         parts.append(
             _link(
@@ -51,7 +52,7 @@ def car(steered=('front_left', 'front_right'), driven=('rear_left', 'rear_right'
             f'<gazebo reference="{name}_wheel"><mu1>{mu}</mu1><mu2>{mu}</mu2></gazebo>'
         )
         if name in driven:
-            parts.append(_transmission(f'{name}_joint', 'Velocity'))
+            parts.append(transmission(f'{name}_joint', 'Velocity'))
     return (
         '<robot name="car">' + ''.join(parts) + '<gazebo><plugin name="control" '
         'filename="libgazebo_ros_control.so"/></gazebo></robot>'

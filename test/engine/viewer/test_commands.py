@@ -30,3 +30,11 @@ def test_commands_that_wait_at_the_end_and_later_ones_are_refused_at_once():
     with pytest.raises(SimError, match='dropped'):
         commands.call(lambda: done.append(4), 600.0)
     assert done == []
+
+
+def test_a_command_that_nobody_carries_out_never_begins():
+    commands, done = WorldCommands(threading.Condition()), []
+    with pytest.raises(SimError, match='does not run its world'):
+        commands.call(lambda: done.append(1), patience=0.0)
+    commands.carry_out()
+    assert done == []

@@ -3,15 +3,12 @@
 import logging
 
 import pytest
-from support import ROOT
+from support import ROOT, box_urdf
 
 from rosbots_description.sim import SimError, World
 from rosbots_description.viewer import open_file
 
-LINK = """<link name="{name}"><inertial><mass value="1"/>
-  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{shape}</link>"""
-BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-URDF = f'<robot name="crate">{LINK.format(name="box", shape=BOX)}</robot>'
+URDF = f'<robot name="crate">{box_urdf("1 1 1", 1.0)}</robot>'
 MODEL = (
     '<sdf version="1.7"><model name="ball"><pose>1 2 7 0 0 0</pose><link name="l"><collision '
     'name="c"><geometry><sphere><radius>0.5</radius></sphere></geometry></collision></link>'
@@ -29,20 +26,14 @@ def written(folder, name, text):
     return path
 
 
-@pytest.mark.parametrize(
-    ('name', 'text', 'height'),
-    [
-        ('crate.urdf', URDF, 0.5),
-        ('ball.sdf', MODEL, 0.5),
-    ],
-)
-def test_a_model_stands_on_the_ground(tmp_path, name, text, height):
+@pytest.mark.parametrize(('name', 'text'), [('crate.urdf', URDF), ('ball.sdf', MODEL)])
+def test_a_model_stands_on_the_ground(tmp_path, name, text):
     with open_file(written(tmp_path, name, text)) as world:
         robot = world.model(name.partition('.')[0])
-        assert robot.pose.position[2] == pytest.approx(height)
+        assert robot.pose.position[2] == pytest.approx(0.5)
         assert list(world.faults) == []
         world.reset_world()
-        assert robot.pose.position[2] == pytest.approx(height)
+        assert robot.pose.position[2] == pytest.approx(0.5)
 
 
 def test_xacro_takes_arguments(tmp_path):
@@ -85,9 +76,8 @@ def test_included_worlds_are_opened_by_name():
 
 
 def test_meshes_beside_the_file_are_found(tmp_path):
-    mesh = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
     for there in ('cube.stl', 'missing.stl'):
-        text = f'<robot name="r">{LINK.format(name="a", shape=mesh.format(there))}</robot>'
+        text = URDF.replace('<box size="1 1 1"/>', f'<mesh filename="{there}"/>')
         written(tmp_path, f'{there}.urdf', text)
     (tmp_path / 'cube.stl').write_text(
         'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 1\n'
@@ -98,7 +88,7 @@ def test_meshes_beside_the_file_are_found(tmp_path):
         pass
     with open_file(tmp_path / 'missing.stl.urdf') as world:
         assert any('missing.stl' in fault.what and fault.line for fault in world.faults)
-        assert world.model('r').left_out
+        assert world.model('crate').left_out
 
 
 def test_faults_are_collected_and_not_logged_meanwhile(tmp_path, caplog):

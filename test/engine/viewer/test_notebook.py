@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 from support.browser import Browser
 from support.patience import PATIENCE, wait_until
+from support.window import Shown
 
 from rosbots_description.sim import World
 from rosbots_description.viewer import notebook
@@ -71,8 +72,7 @@ def test_run_in_a_cell_shows_the_motion_and_takes_commands(events):
         robot = world.spawn(ROBOT, z=0.2)
         viewer = events.cell(world.show)
         viewer.time.unpause()
-        changes, motions = [], []
-        viewer.view.open(changes.append, motions.append)
+        shown = Shown(viewer.view)
         viewer.time.set_speed(0.0)
         done = []
         threading.Thread(
@@ -80,7 +80,7 @@ def test_run_in_a_cell_shows_the_motion_and_takes_commands(events):
         ).start()
         made = events.cell(lambda: world.run(seconds=0.5))
         assert made == 500
-        wait_until(lambda: done and motions, 'command and motion')
+        wait_until(lambda: done and shown.motions, 'command and motion')
         assert robot.pose.position[2] < 0.2
         events.cell(viewer.close)
 

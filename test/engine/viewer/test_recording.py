@@ -1,18 +1,12 @@
 """Recordings: pages that play without a simulator, and that do not change the motion."""
 
 import pytest
+from support import box_urdf
 
 from rosbots_description.sim import SimError, World
 from rosbots_description.web.takes import SceneTake
 
-CRATE = """
-<robot name="crate"><link name="box">
-  <inertial><mass value="2"/>
-    <inertia ixx="0.05" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
-  <visual><geometry><box size="0.5 0.5 0.5"/></geometry></visual>
-  <collision><geometry><box size="0.5 0.5 0.5"/></geometry></collision>
-</link></robot>
-"""
+CRATE = f'<robot name="crate">{box_urdf("0.5 0.5 0.5", 2.0)}</robot>'
 
 
 def fallen(path=None):

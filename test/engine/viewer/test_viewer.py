@@ -4,9 +4,12 @@ import threading
 from contextlib import contextmanager
 
 import pytest
+from support import box_urdf
 from support.browser import Browser
+from support.cars import transmission
 from support.crashing import CRASHING, crash
 from support.patience import PATIENCE, wait_until
+from support.window import Shown
 
 from rosbots_description.sim import Pose, SimError, Twist, World
 from rosbots_description.sim.description import CommandTopic, ModelText
@@ -15,7 +18,7 @@ from rosbots_description.viewer import Viewer, open_sandbox, scene
 from rosbots_description.web import Site
 
 ROBOT = 'package://rosbots_description/urdf/rosbots.xacro'
-ARM = """
+ARM = f"""
 <robot name="arm">
   <link name="world"/>
   <link name="upper">
@@ -27,13 +30,7 @@ ARM = """
     <parent link="world"/><child link="upper"/><axis xyz="0 1 0"/>
     <limit lower="-2" upper="2" effort="50" velocity="3"/>
   </joint>
-  <transmission name="t">
-    <type>transmission_interface/SimpleTransmission</type>
-    <joint name="shoulder">
-      <hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface>
-    </joint>
-    <actuator name="motor"/>
-  </transmission>
+  {transmission('shoulder', 'Effort')}
   <gazebo reference="upper">
     <sensor name="lidar" type="ray"><pose>0 0 0.3 0 0 0</pose><update_rate>100</update_rate>
       <ray><scan><horizontal><samples>8</samples><min_angle>-3</min_angle><max_angle>3</max_angle>
@@ -45,29 +42,14 @@ ARM = """
   <gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>
 </robot>
 """
-CRATE = """
-<robot name="crate"><link name="box">
-  <inertial><mass value="2"/>
-    <inertia ixx="0.05" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
-  <collision><geometry><box size="0.5 0.5 0.5"/></geometry></collision>
-</link></robot>
-"""
-
-
-class Pages:
-    """Remembers what a page is shown."""
-
-    def __init__(self, viewer):
-        self.changes, self.motions = [], []
-        viewer.view.open(self.changes.append, self.motions.append)
+CRATE = f'<robot name="crate">{box_urdf("0.5 0.5 0.5", 2.0)}</robot>'
 
 
 @contextmanager
 def viewing(world, **options):
     """Yield a viewer whose world a thread runs, as rosbots-view's main thread does."""
-    site = Site('127.0.0.1', 0)
     over = threading.Event()
-    viewer = Viewer(world, site, **options)
+    viewer = Viewer(world, Site('127.0.0.1', 0), **options)
     thread = threading.Thread(target=viewer.serve, args=(over.is_set,))
     thread.start()
     try:
@@ -108,7 +90,7 @@ def test_a_browser_sees_the_robot_drives_it_and_stops_time(world):
 def test_sliders_move_joints_while_time_stands_still(world):
     world.spawn(ARM)
     with viewing(world, paused=True) as viewer:
-        pages = Pages(viewer)
+        pages = Shown(viewer.view)
         viewer.joints.set_position('arm', 'shoulder', 0.7)
         assert viewer.joints.position('arm', 'shoulder') == pytest.approx(0.7)
         wait_until(lambda: any(motion.poses for motion in pages.motions), 'the arm being shown')
@@ -195,7 +177,7 @@ def test_models_are_changed_as_by_services(world):
         inspection.set_mass('crate', 'box', 4.0, False)
         inspection.set_friction('crate', 0.2, 0.3)
         link = world.model('crate').link('box').spec
-        assert (link.inertial.mass, link.inertial.ixx, link.gravity) == (4.0, 0.1, False)
+        assert (link.inertial.mass, link.inertial.ixx, link.gravity) == (4.0, 0.2, False)
         assert link.collisions[0].surface.mu == 0.2
         with pytest.raises(SimError, match='greater than zero'):
             inspection.set_mass('crate', 'box', -1.0, True)
@@ -265,7 +247,7 @@ def test_the_world_is_saved_as_a_file_and_contacts_are_shown(world):
     world.spawn(CRATE, z=0.249)
     with viewing(world) as viewer:
         shown = []
-        Pages(viewer)
+        Shown(viewer.view)
         viewer.contacts.open(shown.append)
         wait_until(lambda: any(shown), 'contacts')
         viewer.contacts.close()
@@ -276,21 +258,11 @@ def test_the_world_is_saved_as_a_file_and_contacts_are_shown(world):
 
 def test_the_speed_is_set_for_all_browsers(world):
     with viewing(world) as viewer:
-        pages = Pages(viewer)
+        pages = Shown(viewer.view)
         viewer.time.set_speed(10.0)
         wait_until(
             lambda: pages.changes and pages.changes[-1].max_update_rate == 10000.0, 'the speed'
         )
-
-
-def test_a_command_that_nobody_carries_out_never_begins(world):
-    viewer = Viewer(world, Site('127.0.0.1', 0))
-    done = []
-    with pytest.raises(SimError, match='does not run its world'):
-        viewer.commands.call(lambda: done.append(1), patience=0.0)
-    viewer.commands.carry_out()
-    assert done == []
-    viewer.close()
 
 
 def test_a_page_that_waits_does_not_hold_up_the_world(world):
@@ -308,7 +280,7 @@ def test_a_page_that_waits_does_not_hold_up_the_world(world):
 def test_a_program_that_does_something_else_does_not_count_as_ended(world, monkeypatch):
     monkeypatch.setattr(scene, 'SILENCE', 0.0)
     viewer = Viewer(world, Site('127.0.0.1', 0))
-    pages = Pages(viewer)
+    pages = Shown(viewer.view)
     viewer.run(1)  # and no more
     wait_until(lambda: len(pages.motions) > 2, 'the clock again')
     first, *_, last = pages.motions

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from support.browser import Browser
 from support.patience import PATIENCE, wait_until
+from support.window import Shown
 
 from rosbots_description.gym import SimEnv
 from rosbots_description.sim import SimError
@@ -23,16 +24,6 @@ class Drive(SimEnv):
 
     def score(self, _observation, _action):
         return 0.0, False
-
-
-class Viewer:
-    """Remembers what a page is shown."""
-
-    def __init__(self):
-        self.changes, self.motions = [], []
-
-    def look(self, view):
-        view.open(self.changes.append, self.motions.append)
 
 
 @pytest.fixture
@@ -59,10 +50,9 @@ def test_browser_is_shown_the_robot_and_pauses_the_program(env):
 
 
 def test_who_looks_is_shown_the_world_and_its_motion(env):
-    viewer = Viewer()
     env.reset(seed=0)
     env.step(DRIVE)
-    viewer.look(env._window.view)
+    viewer = Shown(env._window.view)
     env._window.time.set_speed(0.0)
     env.step(DRIVE)
     (change,) = viewer.changes
@@ -78,7 +68,7 @@ def test_who_looks_is_shown_the_world_and_its_motion(env):
 
 def test_time_is_paced_while_somebody_looks(env, monkeypatch):
     env.reset(seed=0)
-    Viewer().look(env._window.view)
+    Shown(env._window.view)
     now = [0.0]
     monkeypatch.setattr(
         window,
@@ -93,13 +83,13 @@ def test_time_is_paced_while_somebody_looks(env, monkeypatch):
 
 
 def test_pause_and_steps_hold_the_environment_and_do_not_change_it(env):
-    viewer, controls = Viewer(), env._window.time
+    controls = env._window.time
     plain = Drive(settle=0.2)
     plain.reset(seed=0)
     expected = [plain.step(DRIVE)[0]['odometry'].tobytes() for _ in range(2)]
     plain.close()
     env.reset(seed=0)
-    viewer.look(env._window.view)
+    viewer = Shown(env._window.view)
     controls.set_speed(0.0)
     controls.pause()
     found = []
