@@ -16,23 +16,9 @@ VISITS = 500
 
 
 class Mallinfo(ctypes.Structure):
-    """glibc's mallinfo2."""
+    """glibc's mallinfo2: ten numbers, of which the eighth is `uordblks`."""
 
-    _fields_ = [
-        (name, ctypes.c_size_t)
-        for name in (
-            'arena',
-            'ordblks',
-            'smblks',
-            'hblks',
-            'hblkhd',
-            'usmblks',
-            'fsmblks',
-            'uordblks',
-            'fordblks',
-            'keepcost',
-        )
-    ]
+    _fields_ = (('numbers', ctypes.c_size_t * 10),)
 
 
 def allocated():
@@ -40,7 +26,7 @@ def allocated():
     gc.collect()
     libc = ctypes.CDLL(None)
     libc.mallinfo2.restype = Mallinfo
-    return libc.mallinfo2().uordblks
+    return libc.mallinfo2().numbers[7]
 
 
 class Topics:

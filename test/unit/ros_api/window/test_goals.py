@@ -1,53 +1,51 @@
 """Goals and initial poses as messages, to the topics that take them."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 import rospy
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 
-from rosbots_description.ros_api.window import goals
+from rosbots_description.ros_api.window import goals as module
 from rosbots_description.ros_api.window.goals import RosGoals
 from rosbots_description.sim.core import Pose
 
 POSE = Pose((1.0, 2.0, 0.0), (0.0, 0.0, 1.0, 0.0))
 
 
-class Graph:
-    """What is subscribed to."""
+SUBSCRIBED = {
+    '/a': 'geometry_msgs/PoseStamped',
+    '/initialpose': 'geometry_msgs/PoseWithCovarianceStamped',
+    '/cmd_vel': 'geometry_msgs/Twist',
+    '/move_base_simple/goal': 'geometry_msgs/PoseStamped',
+}
 
-    def subscribed(self):
-        return {
-            '/a': 'geometry_msgs/PoseStamped',
-            '/initialpose': ('geometry_msgs/PoseWithCovarianceStamped'),
-            '/cmd_vel': 'geometry_msgs/Twist',
-            '/move_base_simple/goal': 'geometry_msgs/PoseStamped',
-        }
+
+@pytest.fixture
+def goals():
+    return RosGoals(SimpleNamespace(subscribed=lambda: SUBSCRIBED))
 
 
 @pytest.fixture
 def sent(monkeypatch):
     sent = []
 
-    class FakeCommands:
-        def __init__(self, topic, kind):
-            self.made_for = topic, kind
+    def commands(*made_for):
+        return SimpleNamespace(publish=lambda message: sent.append((*made_for, message)))
 
-        def publish(self, message):
-            sent.append((*self.made_for, message))
-
-    monkeypatch.setattr(goals, 'Commands', FakeCommands)
+    monkeypatch.setattr(module, 'Commands', commands)
     monkeypatch.setattr(rospy.Time, 'now', lambda: rospy.Time(7))
     return sent
 
 
-def test_topics_are_by_type_and_those_of_move_base_and_amcl_come_first():
-    assert RosGoals(Graph()).goal_topics() == ['/move_base_simple/goal', '/a']
-    assert RosGoals(Graph()).estimate_topics() == ['/initialpose']
+def test_topics_are_by_type_and_those_of_move_base_and_amcl_come_first(goals):
+    assert goals.goal_topics() == ['/move_base_simple/goal', '/a']
+    assert goals.estimate_topics() == ['/initialpose']
 
 
-def test_a_goal_has_its_pose_frame_and_time(sent):
-    RosGoals(Graph()).send_goal('/a', 'map', POSE)
+def test_a_goal_has_its_pose_frame_and_time(goals, sent):
+    goals.send_goal('/a', 'map', POSE)
     ((topic, kind, message),) = sent
     assert (topic, kind) == ('/a', PoseStamped)
     assert (message.header.frame_id, message.header.stamp) == ('map', rospy.Time(7))
@@ -55,8 +53,8 @@ def test_a_goal_has_its_pose_frame_and_time(sent):
     assert (message.pose.orientation.z, message.pose.orientation.w) == (1.0, 0.0)
 
 
-def test_an_initial_pose_is_as_uncertain_as_rvizs(sent):
-    RosGoals(Graph()).send_estimate('/initialpose', 'map', POSE)
+def test_an_initial_pose_is_as_uncertain_as_rvizs(goals, sent):
+    goals.send_estimate('/initialpose', 'map', POSE)
     ((_, kind, message),) = sent
     assert kind is PoseWithCovarianceStamped
     assert message.pose.pose.position.y == 2.0

@@ -1,5 +1,6 @@
 """Topics of commands to controllers, and what is published on them."""
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import pytest
@@ -9,27 +10,14 @@ from rosbots_description.ros_api.window import joints as module
 from rosbots_description.ros_api.window.joints import RosJoints
 from rosbots_description.sim.description import CommandTopic
 
-NUMBER, ARRAY, TRAJECTORY = (
-    'std_msgs/Float64',
-    'std_msgs/Float64MultiArray',
-    'trajectory_msgs/JointTrajectory',
-)
+NUMBER, ARRAY = 'std_msgs/Float64', 'std_msgs/Float64MultiArray'
+TRAJECTORY = 'trajectory_msgs/JointTrajectory'
 PARAMETERS = {
     '/group': {'joints': ['a', 'b'], 'type': 'position_controllers/JointGroupPositionController'},
     '/force': {'joints': ['a'], 'type': 'effort_controllers/JointGroupEffortController'},
     '/arm': {'joints': ['a', 'b'], 'type': 'effort_controllers/JointTrajectoryController'},
     '/odd': {'joints': 'a'},
 }
-
-
-class FakeGraph:
-    """Topics that other nodes subscribe to, with their types."""
-
-    def __init__(self):
-        self.topics = {}
-
-    def subscribed(self):
-        return self.topics
 
 
 class FakePublisher:
@@ -51,7 +39,10 @@ class FakePublisher:
 
 @pytest.fixture
 def graph():
-    return FakeGraph()
+    """Topics that other nodes subscribe to, with their types."""
+    graph = SimpleNamespace(topics={})
+    graph.subscribed = lambda: graph.topics
+    return graph
 
 
 @pytest.fixture

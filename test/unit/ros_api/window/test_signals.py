@@ -1,5 +1,7 @@
 """Curves of topics: which topics are subscribed to, and what is read of them."""
 
+from types import SimpleNamespace
+
 import pytest
 from genpy import Time
 from nav_msgs.msg import Odometry
@@ -17,11 +19,6 @@ TYPES = {
     '/any': '*',
 }
 SPEED = '/odom/twist/twist/linear/x'
-
-
-class FakeTopics:
-    def published(self):
-        return TYPES
 
 
 class FakeFeed:
@@ -44,7 +41,7 @@ FEEDS = {}
 def signals(monkeypatch):
     FEEDS.clear()
     monkeypatch.setattr(module, 'Feed', FakeFeed)
-    return RosSignals(FakeTopics())
+    return RosSignals(SimpleNamespace(published=lambda: TYPES))
 
 
 def test_topics_with_numbers_are_offered(signals):
