@@ -81,14 +81,9 @@ class Door:
             headers: of every response.
         """
         self._host, self._headers = host, headers
-        self._passes = [
-            Pass(value, may_control, f'rosbots_{called}_{port}')
-            for value, may_control, called in (
-                (token, True, 'window'),
-                (viewing_token, False, 'viewing'),
-            )
-            if value
-        ]
+        control = Pass(token, True, f'rosbots_window_{port}')
+        viewing = Pass(viewing_token, False, f'rosbots_viewing_{port}')
+        self._passes = [one for one in (control, viewing) if one.token]
 
     def guarding(self, process: Process) -> Process:
         """Return `process` for those requests only that are let in."""
@@ -115,20 +110,14 @@ class Door:
             return self._process(connection, request, process, may_control=True)
         url = urlsplit(request.path)
         shown = next((one for one in self._passes if _has_token(one, url.query)), None)
+        inside = next((one for one in self._passes if one.is_inside(url.path)), None)
         if request.headers.get('Upgrade', '').lower() == 'websocket':
-            shown = shown or next(
-                (
-                    one
-                    for one in self._passes
-                    if one.is_inside(url.path) and self._has_cookie(one, request.headers)
-                ),
-                None,
-            )
+            if shown is None and inside is not None and self._has_cookie(inside, request.headers):
+                shown = inside
             if shown is None:
                 return connection.respond(http.HTTPStatus.FORBIDDEN, f'{NO_TOKEN}\n')
             return self._process(connection, request, process, may_control=shown.may_control)
         # The file of the page is no secret; what it connects to is.
-        inside = next((one for one in self._passes if one.is_inside(url.path)), None)
         if inside is not None:
             inner = url.path.removeprefix(f'/{inside.path}') or '/'
             response = process(connection, replace(request, path=inner))

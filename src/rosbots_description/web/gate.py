@@ -68,12 +68,12 @@ class Visitor:
 class Gate:
     """Reads the messages of all connections; on the server's own thread."""
 
-    def __init__(self, most_clients: int = MOST_CLIENTS) -> None:
-        """Begin; there is room for so many browsers that control, and as many that look."""
-        self._most_clients = most_clients
+    def __init__(self, site: viser.ViserServer, most_clients: int = MOST_CLIENTS) -> None:
+        """Begin closed; there is room for so many browsers that control, and as many that look."""
+        self._site, self._most_clients = site, most_clients
+        self.is_open = False  # not before the site is complete
         # By the numbers of controls: the interface that has each, of a browser or of all.
         self._for_viewers: dict[str, viser.GuiApi] = {}
-        self.site: viser.ViserServer | None = None  # when it is complete
         self._visitors: dict[int, Visitor] = {}  # by the identity of the connection
         self._uploads = Uploads()
         self._receivers: dict[str, tuple[viser.GuiApi, Received]] = {}  # of files, likewise
@@ -125,7 +125,7 @@ class Gate:
         async def counted(connection: ServerConnection) -> None:
             may_control = getattr(connection, CONTROLS, False)
             alike = [one for one in self._visitors.values() if one.may_control == may_control]
-            if self.site is None or len(alike) >= self._most_clients:
+            if not self.is_open or len(alike) >= self._most_clients:
                 await connection.close(1013, FULL)
                 return
             visitor = self._visitors[id(connection)] = Visitor(connection, may_control)
@@ -178,8 +178,7 @@ class Gate:
 
     async def _wait_for_room(self) -> None:
         """Wait until few commands wait, so that one browser's flood costs no other a command."""
-        assert self.site is not None
-        executor: Any = self.site._thread_executor  # viser's
+        executor: Any = self._site._thread_executor  # viser's
         end = time.monotonic() + HOPELESS
         while executor._work_queue.qsize() > BACKLOG:
             if time.monotonic() > end:
@@ -187,7 +186,6 @@ class Gate:
             await asyncio.sleep(ROOM)
 
     def _check(self, visitor: Visitor, message: Message) -> bool:
-        assert self.site is not None
         kind = type(message).__name__
         if kind == 'FileTransferStartUpload':
             self._start(visitor, message)
@@ -233,10 +231,9 @@ class Gate:
 
     def _control(self, visitor: Visitor, number: str) -> _GuiInputHandle[Any] | None:
         """Return a control of this browser, or of all; None: it has none of that number."""
-        assert self.site is not None
         client = self._client(visitor)
         own = {} if client is None else client.gui._gui_input_handle_from_uuid
-        return own.get(number) or self.site.gui._gui_input_handle_from_uuid.get(number)
+        return own.get(number) or self._site.gui._gui_input_handle_from_uuid.get(number)
 
     def _start(self, visitor: Visitor, message: Message) -> None:
         button = message.source_component_uuid
@@ -284,8 +281,7 @@ class Gate:
     def _hand_over(self, visitor: Visitor, upload: Upload) -> None:
         client = self._client(visitor)
         if client is not None:
-            assert self.site is not None
-            executor: Executor = self.site._thread_executor
+            executor: Executor = self._site._thread_executor
             _, received = self._receivers[upload.button]
             executor.submit(received, client, upload.name, content(upload)).add_done_callback(
                 _log_failure
@@ -315,11 +311,10 @@ class Gate:
 
     def _client(self, visitor: Visitor) -> viser.ClientHandle | None:
         """Return viser's handle of a connection; None before its first camera message."""
-        assert self.site is not None
-        connections = self.site._websock_server._live_connections
+        connections = self._site._websock_server._live_connections
         return next(
             (
-                self.site.get_clients().get(number)
+                self._site.get_clients().get(number)
                 for number, one in tuple(connections.items())
                 if one is visitor.connection
             ),

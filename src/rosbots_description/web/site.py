@@ -59,43 +59,25 @@ class Site(viser.ViserServer):
         listener = _listen(host, port)
         port = listener.getsockname()[1]
         self.token = '' if is_open else token or new_token()
+        self.viewing_token = '' if is_open else viewing_token or new_token()
         shown = f'[{host}]' if ':' in host else host
         if host in {'0.0.0.0', '::'}:
             shown = socket.gethostname()
-        self.viewing_token = '' if is_open else viewing_token or new_token()
         place = f'http://{shown}:{port}/'
         self.address = place + (f'?token={self.token}' if self.token else '')
         self.viewing_address = f'{place}?token={self.viewing_token}' if self.viewing_token else ''
-        self._gate = gate = Gate(most_viewers)
+        self._gate = gate = Gate(self, most_viewers)
         door = Door(host, port, self.token, self.viewing_token, page_headers(is_framed))
-        serve = websockets.asyncio.server.serve
-
-        def serve_here(
-            handler: Handler, *_address: object, process_request: Process, **options: Any
-        ) -> websockets.asyncio.server.serve:
-            options |= {
-                'max_size': MAX_MESSAGE,
-                'max_queue': 1,
-                'server_header': None,
-                'create_connection': gate.connection_class(),
-            }
-            return serve(
-                gate.counting(handler),
-                sock=listener,
-                process_request=door.guarding(process_request),
-                **options,
-            )
-
         rich.reconfigure(quiet=True)  # viser's own lines
         logging.getLogger('websockets.server').addFilter(_NO_NOISE)
         # Somebody has left, which is no fault.
         warnings.filterwarnings('ignore', r'Queued a \w+ on a closed connection')
         # Viser looks for a free port by itself and takes no socket and no guard.
-        with mock.patch('websockets.asyncio.server.serve', serve_here):
+        with mock.patch('websockets.asyncio.server.serve', _serving(listener, door, gate)):
             super().__init__(host, port, verbose=False)
         leave_to_loop(self._websock_server.get_message_buffer())
         self._websock_server.on_client_connect(self._prepare)
-        gate.site = self
+        gate.is_open = True
         self.on_client_connect(gate.greet)
 
     def _prepare(self, connection: WebsockClientConnection) -> None:
@@ -133,6 +115,26 @@ class _NoNoise(logging.Filter):
 
 
 _NO_NOISE = _NoNoise()
+
+
+def _serving(listener: socket.socket, door: Door, gate: Gate) -> Callable[..., object]:
+    """Return what viser is to call to serve: on our socket, for whom door and gate let in."""
+    serve = websockets.asyncio.server.serve
+
+    def serve_here(
+        handler: Handler, *_address: object, process_request: Process, **options: Any
+    ) -> websockets.asyncio.server.serve:
+        options |= {
+            'sock': listener,
+            'process_request': door.guarding(process_request),
+            'create_connection': gate.connection_class(),
+            'max_size': MAX_MESSAGE,
+            'max_queue': 1,
+            'server_header': None,
+        }
+        return serve(gate.counting(handler), **options)
+
+    return serve_here
 
 
 def _listen(host: str, port: int) -> socket.socket:
