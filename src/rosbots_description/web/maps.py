@@ -5,10 +5,10 @@ from typing import Protocol
 
 import viser
 
-from ..sim.core import IDENTITY, Pose, SimError
+from ..sim.core import IDENTITY, SimError
 from ..sim.description import ShownReading
 from .models import Models
-from .reading_row import ReadingRow, has_shape
+from .reading_row import ReadingRow
 from .topics import ShownTopics, TopicPanel
 
 NONE = 'Nobody publishes a map, a path, poses or a goal.'
@@ -32,6 +32,8 @@ class MapPanel(TopicPanel):
     Frames such as map move against the true robot when a robot corrects where it takes itself to
     be: what is shown moves along. One that TF does not connect with a robot is the world's.
     """
+
+    UNKNOWN_FRAME = "TF does not connect its frame '{}' with a robot: it is shown as the world's."
 
     def __init__(self, site: viser.ViserServer, maps: Maps, models: Models) -> None:
         super().__init__(site, maps, models, 'maps and goals', NONE)
@@ -58,7 +60,7 @@ class MapPanel(TopicPanel):
     def _place(self, topic: str, reading: ShownReading, row: ReadingRow) -> None:
         pose = self._pose(topic, reading.frame)
         self._shown[topic] = reading, pose is not None
-        row.show(reading, pose or IDENTITY, _note(reading, pose))
+        row.show(reading, pose or IDENTITY, self._frame_note(reading, pose))
 
     def _tick(self) -> None:
         super()._tick()
@@ -68,12 +70,4 @@ class MapPanel(TopicPanel):
                 row.move(pose or IDENTITY)
                 if was_known != (pose is not None):
                     self._shown[topic] = reading, pose is not None
-                    row.say(reading, _note(reading, pose))
-
-
-def _note(reading: ShownReading, pose: Pose | None) -> str:
-    if pose is not None or not has_shape(reading):
-        return ''
-    return (
-        f"TF does not connect its frame '{reading.frame}' with a robot: it is shown as the world's."
-    )
+                    row.say(reading, self._frame_note(reading, pose))

@@ -1,14 +1,14 @@
 """Topics with boxes: those whose boxes are checked are shown, and no others read."""
 
 from collections.abc import Collection, Mapping
-from functools import partial
+from functools import cache, partial
 from itertools import islice
 from typing import Protocol
 
 import viser
 
 from ..sim.core import IDENTITY, Pose, SimError, compose
-from ..sim.description import SceneChange, ShownLink, ShownReading
+from ..sim.description import SceneChange, ShownReading
 from .models import Models
 from .reading import ReadingPanel
 from .reading_row import ReadingRow, has_shape
@@ -45,6 +45,8 @@ class ShownTopics(Protocol):
 class TopicPanel(ReadingPanel):
     """A box for each topic."""
 
+    UNKNOWN_FRAME = "It is not in the scene: TF does not connect its frame '{}' with a link."
+
     def __init__(
         self, site: viser.ViserServer, source: ShownTopics, models: Models, plural: str, none: str
     ) -> None:
@@ -62,14 +64,14 @@ class TopicPanel(ReadingPanel):
         self._rows: dict[str, ReadingRow] = {}
         self._checked: set[str] = set()  # also of topics that have gone, and may return
         self._unplaced: dict[str, ShownReading] = {}  # until it is known where they are
-        self._links: dict[str, dict[str, ShownLink]] = {}  # by names, for each topic
+        self._links_for = cache(models.links_for)  # until the models change
         self._note = Words(site.gui, none)
         self._folder = site.gui.add_folder(plural.capitalize())
 
     def apply(self, change: SceneChange) -> None:
         """Look for links anew."""
         with self._lock:
-            self._links.clear()
+            self._links_for.cache_clear()
 
     def refresh(self) -> None:
         """Offer the topics that there are, and read those that are chosen."""
@@ -97,13 +99,9 @@ class TopicPanel(ReadingPanel):
         with self._folder:
             for number, (topic, kind) in enumerate(topics.items()):
                 if topic not in self._rows:
-                    self._rows[topic] = ReadingRow(
-                        self._site,
-                        topic,
-                        kind,
-                        topic in self._checked,
-                        partial(self._choose, topic),
-                    )
+                    choose = partial(self._choose, topic)
+                    checked = topic in self._checked
+                    self._rows[topic] = ReadingRow(self._site, topic, kind, checked, choose)
                 self._rows[topic].rank(number)
 
     def _choose(self, topic: str) -> None:
@@ -150,16 +148,12 @@ class TopicPanel(ReadingPanel):
         pose = self._pose(topic, reading.frame)
         if pose is None:
             self._unplaced[topic] = reading
-        row.show(
-            reading,
-            pose,
-            ''
-            if pose is not None or not has_shape(reading)
-            else (
-                'It is not in the scene: TF does not connect its frame '
-                f"'{reading.frame}' with a link."
-            ),
-        )
+        row.show(reading, pose, self._frame_note(reading, pose))
+
+    def _frame_note(self, reading: ShownReading, pose: Pose | None) -> str:
+        """Return a sentence about a frame that is not known, if it is needed; else ''."""
+        is_needed = pose is None and has_shape(reading)
+        return self.UNKNOWN_FRAME.format(reading.frame) if is_needed else ''
 
     def _pose(self, topic: str, frame: str) -> Pose | None:
         """Return the pose of a frame in the world; None if it is not known."""
@@ -171,8 +165,3 @@ class TopicPanel(ReadingPanel):
             return None
         link, pose = found
         return compose(self._models.link_pose(links[link]), pose)
-
-    def _links_for(self, topic: str) -> Mapping[str, ShownLink]:
-        if topic not in self._links:
-            self._links[topic] = self._models.links_for(topic)
-        return self._links[topic]

@@ -5,6 +5,7 @@ Subscribes:
 """
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import genpy
@@ -23,17 +24,13 @@ class RosSignals:
 
     def __init__(self, topics: TopicGraph) -> None:
         self._topics = topics
-        self._paths: dict[str, tuple[str, ...]] = {}  # by types
         self._feeds: dict[str, Feed] = {}
         self._curves: dict[str, tuple[str, Callable[[Any], float]]] = {}
 
     def signal_topics(self) -> dict[str, tuple[str, ...]]:
         """Return the paths of the numbers in each topic that other nodes publish."""
-        topics = self._topics.published()
-        for kind in set(topics.values()) - self._paths.keys():
-            found = _class(kind)
-            self._paths[kind] = number_paths(found) if found else ()
-        return {name: self._paths[kind] for name, kind in topics.items() if self._paths[kind]}
+        topics = self._topics.published().items()
+        return {name: paths for name, kind in topics if (paths := _paths(kind))}
 
     def open(self, curve: str) -> None:
         """Begin to read a curve.
@@ -72,6 +69,12 @@ class RosSignals:
             curve: [(_stamp(message), arrival, get(message)) for arrival, message in taken[topic]]
             for curve, (topic, get) in self._curves.items()
         }
+
+
+@cache
+def _paths(kind: str) -> tuple[str, ...]:
+    found = _class(kind)
+    return number_paths(found) if found else ()
 
 
 def _class(kind: str) -> type[Any] | None:
