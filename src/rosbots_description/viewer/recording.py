@@ -3,7 +3,6 @@
 import html
 import os
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from ..sim import SimError, World
@@ -42,12 +41,7 @@ class Recording(Hook):
         """Return the recording."""
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         """End it."""
         self.close()
 

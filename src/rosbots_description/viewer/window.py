@@ -5,23 +5,9 @@ import threading
 import time
 from collections.abc import Sequence
 
+from .. import web
 from ..sim import Fault, SimError, World
-from ..web import (
-    Contacts,
-    Editor,
-    Goals,
-    Inspection,
-    Joints,
-    Library,
-    Maps,
-    Page,
-    Robots,
-    ShownTopics,
-    Signals,
-    Site,
-    WindowError,
-    Worlds,
-)
+from ..web import Page, Site, WindowError
 from .pace import Pace
 from .scene import ReleasingView, WorldView
 
@@ -35,17 +21,17 @@ class Window:
     The program gives the commands, so the page only shows, pauses and paces.
     """
 
-    robots: Robots | None = None
-    joints: Joints | None = None
-    sensors: ShownTopics | None = None
-    maps: Maps | None = None
-    goals: Goals | None = None
-    signals: Signals | None = None
-    inspection: Inspection | None = None
-    contacts: Contacts | None = None
-    editor: Editor | None = None
-    library: Library | None = None
-    worlds: Worlds | None = None
+    robots: web.Robots | None = None
+    joints: web.Joints | None = None
+    sensors: web.ShownTopics | None = None
+    maps: web.Maps | None = None
+    goals: web.Goals | None = None
+    signals: web.Signals | None = None
+    inspection: web.Inspection | None = None
+    contacts: web.Contacts | None = None
+    editor: web.Editor | None = None
+    library: web.Library | None = None
+    worlds: web.Worlds | None = None
 
     def __init__(self, world: World, port: int) -> None:
         """Begin to serve.
