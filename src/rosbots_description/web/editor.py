@@ -75,22 +75,17 @@ class EditorPanel(Panel):
             duration = gui.add_number('Duration [s]', 0.1, min=0.0, step=0.1)
             axes = gui.add_dropdown('Axes of the', AXES)
             push = gui.add_button('Push', icon=viser.Icon.ARROW_BIG_RIGHT)
+
+        def push_link(model: str) -> None:
+            in_link = axes.value == 'link'
+            editor.push(self._link_of(model), force.value, torque.value, duration.value, in_link)
+
         self._controls = (duplicate, delete, push)
         self._show()
         selection.on_change(self._show)
         duplicate.on_click(lambda _: self._do(self._duplicate))
         delete.on_click(lambda _: self._do(self._delete))
-        push.on_click(
-            lambda _: self._do(
-                lambda model: editor.push(
-                    self._link_of(model),
-                    force.value,
-                    torque.value,
-                    duration.value,
-                    axes.value == 'link',
-                )
-            )
-        )
+        push.on_click(lambda _: self._do(push_link))
         gui.add_command('Delete the selected model', hotkey='delete').on_trigger(
             lambda _: self._do(self._delete)
         )

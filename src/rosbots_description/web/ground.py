@@ -1,5 +1,7 @@
 """Keeps the cameras of browsers above the ground."""
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 import viser
 
@@ -21,14 +23,15 @@ class Ground(Panel):
     def __init__(self, site: viser.ViserServer, models: Models) -> None:
         self._models = models
         self._lowest: float | None = None  # height of an eye [m]
-        # First views that browsers have not reported yet, by their numbers: eye and target [m].
-        self._expected: dict[int, tuple[Vector, Vector]] = {}
+        # First views that browsers have not reported yet: eye and target [m].
+        self._expected: WeakKeyDictionary[viser.ClientHandle, tuple[Vector, Vector]] = (
+            WeakKeyDictionary()
+        )
         site.on_client_connect(self._watch)
-        site.on_client_disconnect(self._forget)
 
     def expect(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
         """Take in the first view that a browser was told; what it reports before is not its own."""
-        self._expected[client.client_id] = eye, target
+        self._expected[client] = eye, target
 
     def apply(self, _change: SceneChange) -> None:
         """Look for grounds: planes that face upwards."""
@@ -45,17 +48,14 @@ class Ground(Panel):
     def _watch(self, client: viser.ClientHandle) -> None:
         client.camera.on_update(self._lift)
 
-    def _forget(self, client: viser.ClientHandle) -> None:
-        self._expected.pop(client.client_id, None)
-
     def _lift(self, camera: viser.CameraHandle) -> None:
         x, y, z = map(float, camera.position)
         lowest = self._lowest
         is_below = lowest is not None and z < lowest - TOLERANCE
-        first = self._expected.get(camera.client.client_id)
+        first = self._expected.get(camera.client)
         if first is not None:
             if np.allclose(camera.position, first[0], atol=NEAR):
-                self._forget(camera.client)
+                self._expected.pop(camera.client, None)
             elif is_below:
                 with camera.client.atomic():
                     look(camera, *first)

@@ -22,6 +22,7 @@ from .site import Site
 MOST = 1000  # names that are offered
 LISTED = 4  # parts that a model was spawned without
 NONE = '(none)'
+MODEL, PARAMETER = 'model on the model path', 'parameter with a URDF'
 ASK_PLACE = 'Click on the ground where the next model is to appear.'
 
 
@@ -104,33 +105,22 @@ class InsertPanel(Panel):
             red, green, blue = (part / 255.0 for part in colour.value)
             return red, green, blue
 
+        def solid() -> ModelSpec:
+            return shape(kind.value, size.value, mass.value, rgb(), static.value)
+
+        def inserting(read: Callable[[Vector], ModelText]) -> Callable[[object], None]:
+            return lambda _event: self._insert(read)
+
         place.on_click(lambda _: clicks.ask(client, ASK_PLACE, self._keep_place))
-        add_shape.on_click(
-            lambda _: self._insert(
-                lambda _: library.shape(
-                    shape(kind.value, size.value, mass.value, rgb(), static.value)
-                )
-            )
-        )
-        add_light.on_click(
-            lambda _: self._insert(lambda place: library.light(point_light(place, rgb())))
-        )
+        add_shape.on_click(inserting(lambda _: library.shape(solid())))
+        add_light.on_click(inserting(lambda place: library.light(point_light(place, rgb()))))
         remove_light.on_click(lambda _: attempt(self._remove_light, complain))
-        add_model.on_click(
-            lambda _: self._insert(
-                lambda _: library.model(_chosen(self._models.value, 'model on the model path'))
-            )
-        )
+        add_model.on_click(inserting(lambda _: library.model(_chosen(self._models, MODEL))))
         add_parameter.on_click(
-            lambda _: self._insert(
-                lambda _: library.parameter(
-                    _chosen(self._parameters.value, 'parameter with a URDF')
-                )
-            )
+            inserting(lambda _: library.parameter(_chosen(self._parameters, PARAMETER)))
         )
         site.receive_files(
-            upload,
-            lambda _, name, content: self._insert(lambda _: library.file(name, content)),
+            upload, lambda _, name, content: self._insert(lambda _: library.file(name, content))
         )
 
     def apply(self, change: SceneChange) -> None:
@@ -193,7 +183,8 @@ def _offer(choice: Choice, names: Sequence[str]) -> None:
     choice.offer(names[:MOST] or (NONE,))
 
 
-def _chosen(name: str, what: str) -> str:
+def _chosen(choice: Choice, what: str) -> str:
+    name = choice.value
     if name in ('', NONE):
         raise SimError(f'there is no {what}')
     return name

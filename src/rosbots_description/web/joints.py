@@ -24,6 +24,8 @@ UNITS = {  # of joints that slide, and of those that turn
     VELOCITY: ('m/s', 'rad/s'),
     EFFORT: ('N', 'N m'),
 }
+# Of the sliders: the model, its joints or the topics, what they set, and the range.
+Sliders = tuple[str, Sequence[CommandTopic | str], str, float]
 
 
 class Joints(Protocol):
@@ -64,13 +66,7 @@ class JointPanel(Panel):
         self._models, self._complain = models, complain
         self._lock = threading.RLock()
         self._topics: Sequence[CommandTopic] = ()
-        # Of the sliders: the model, its joints or the topics, what they set, and the range.
-        self._shown: tuple[str, Sequence[CommandTopic | str], str, float] = (
-            NOTHING,
-            (),
-            POSITION,
-            0.0,
-        )
+        self._shown: Sliders = NOTHING, (), POSITION, 0.0
         self._sliders: list[viser.GuiSliderHandle[float]] = []
         gui = client.gui
         self._folder = gui.add_folder('Joints', visible=False)
@@ -82,14 +78,14 @@ class JointPanel(Panel):
                 10.0,
                 min=0.001,
                 step=0.001,
-                hint=('of velocities [rad/s, m/s], efforts [N m, N] without a limit, and topics'),
+                hint='of velocities [rad/s, m/s], efforts [N m, N] without a limit, and topics',
             )
             self._force = gui.add_number(
                 'Motor effort',
                 10.0,
                 min=0.0,
                 step=0.001,
-                hint=('a velocity is kept with at most this effort [N m, N]'),
+                hint='a velocity is kept with at most this effort [N m, N]',
             )
             self._release = gui.add_button(
                 'Release', hint='switches motors off and ends efforts of these joints'

@@ -19,11 +19,6 @@ class Models(Panel):
         """Return all models by name, in the order in which they came."""
         return self._models
 
-    def link(self, model: str, link: str) -> ShownLink | None:
-        """Return a link of a model; None if there is none of that name."""
-        shown = self._models.get(model)
-        return next((one for one in shown.links if one.name == link), None) if shown else None
-
     def link_pose(self, link: ShownLink) -> Pose:
         """Return the pose of a link's frame in the world."""
         return self._poses.get(link.number, link.pose)

@@ -51,10 +51,11 @@ class Selection(Panel):
         """Select a model, one of its links, or nothing; what does not exist counts as nothing."""
         with self.lock:
             self._expected = None
-            if model not in self.models.all:
-                model = None
-            if model is None or link is None or self.models.link(model, link) is None:
+            shown = self.models.all.get(model or '')
+            if shown is None or link not in {one.name for one in shown.links}:
                 link = None
+            if shown is None:
+                model = None
             if (model, link) != self._chosen:
                 self._chosen = model, link
                 for callback in self._callbacks:
