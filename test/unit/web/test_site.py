@@ -1,9 +1,9 @@
 """Who is let in to the window."""
 
+import http.client
 import re
 import socket
-import urllib.error
-import urllib.request
+from contextlib import closing
 from urllib.parse import urlsplit
 
 import pytest
@@ -24,21 +24,13 @@ def open_site():
         yield site
 
 
-class NoRedirect(urllib.request.HTTPRedirectHandler):
-    """Leaves answers as they are."""
-
-    def redirect_request(self, *_):
-        return None
-
-
 def get(address, **headers):
     """Return status, headers and text of an answer."""
-    request = urllib.request.Request(address, headers=headers)
-    try:
-        with urllib.request.build_opener(NoRedirect).open(request, timeout=60) as answer:
-            return answer.status, answer.headers, answer.read().decode()
-    except urllib.error.HTTPError as error:
-        return error.code, error.headers, error.read().decode()
+    host = urlsplit(address).netloc
+    with closing(http.client.HTTPConnection(host, timeout=60)) as connection:
+        connection.request('GET', address.removeprefix(f'http://{host}'), headers=headers)
+        answer = connection.getresponse()
+        return answer.status, answer.headers, answer.read().decode()
 
 
 def refusal(address, **headers):
