@@ -21,10 +21,10 @@ from .joystick import Joystick
 from .models import Models
 from .notices import Notices
 from .outline import Outline
+from .overlay_panel import OverlayPanel
 from .panel import Panel
 from .polled import Polled
 from .selection import Selection
-from .show import ShowPanel
 from .simulator import Simulator
 from .site import Site
 from .start_view import StartView
@@ -78,8 +78,8 @@ class BrowserPanels(Panel):
             if tabs.edit is not None:
                 self._add_editing(tabs.edit)
             with tabs.show:
-                self._show = ShowPanel(client, self.selection, shared.site.allow_viewers)
-        self._panels.append(self._show)
+                self._overlays = OverlayPanel(client, self.selection, shared.site.allow_viewers)
+        self._panels.append(self._overlays)
         _detach(client)
         self.refresh()
 
@@ -90,7 +90,7 @@ class BrowserPanels(Panel):
     def redraw(self) -> None:
         """Draw again what the browser has of its own in the scene."""
         self._outline.draw()
-        self._show.draw()
+        self._overlays.draw()
 
     def apply(self, change: SceneChange) -> None:
         """Take in a change of the scene."""

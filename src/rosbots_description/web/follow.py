@@ -20,11 +20,7 @@ class FollowPanel(Panel):
     """
 
     def __init__(
-        self,
-        client: viser.ClientHandle,
-        selection: Selection,
-        order: float,
-        allow_viewers: Allow,
+        self, client: viser.ClientHandle, selection: Selection, order: float, allow_viewers: Allow
     ) -> None:
         self._client, self._selection = client, selection
         self._followed: str | None = None

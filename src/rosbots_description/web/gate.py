@@ -16,10 +16,10 @@ from viser._messages import FileTransferPartAck, GuiUpdateMessage
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
-from .allowance import Allowance
 from .client_messages import MalformedError, Message, RefusedError, check_value, is_camera, read
 from .door import CONTROLS
 from .notices import left_out, show
+from .rate_limit import RateLimit
 from .uploads import Upload, Uploads, content
 
 logger = logging.getLogger(__name__)
@@ -60,7 +60,7 @@ class Visitor:
     may_control: bool
     has_looked: bool = False  # its first camera message has come
     early: deque[Data] = field(default_factory=deque)  # what came before
-    messages: Allowance = field(default_factory=lambda: Allowance(BURST, RATE))
+    messages: RateLimit = field(default_factory=lambda: RateLimit(BURST, RATE))
     next_notice: float = 0.0  # [s, monotonic]
     left_out: int = 0  # notices since the last one
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable
 
 import viser
 
-from .allowance import Allowance
 from .panel import Panel
+from .rate_limit import RateLimit
 from .text import plain
 
 MOST = 1000  # characters of a notice
@@ -20,13 +20,13 @@ class Notices(Panel):
         """Begin; `clients` returns the browsers that are connected."""
         self._clients = clients
         self._lock = threading.Lock()
-        self._allowance = Allowance(AT_ONCE, RATE)
+        self._limit = RateLimit(AT_ONCE, RATE)
         self._left_out = 0
 
     def tell(self, sentence: str) -> None:
         """Show a sentence, or count it."""
         with self._lock:
-            if self._allowance.has_one():
+            if self._limit.has_one():
                 self._show(sentence)
             else:
                 self._left_out += 1
@@ -34,12 +34,12 @@ class Notices(Panel):
     def refresh(self) -> None:
         """Say how many are left out."""
         with self._lock:
-            if self._left_out and self._allowance.has_one():
+            if self._left_out and self._limit.has_one():
                 count, self._left_out = self._left_out, 0
                 self._show(left_out(count))
 
     def _show(self, sentence: str) -> None:
-        self._allowance.take()
+        self._limit.take()
         for client in self._clients():
             show(client, sentence)
 

@@ -9,7 +9,6 @@ from weakref import WeakSet
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
-from .bar import Bar
 from .browser_panels import BrowserPanels, Shared, Tabs
 from .clock import Clock
 from .contacts import ContactsPanel
@@ -27,14 +26,15 @@ from .layout import lay_out
 from .maps import MapPanel
 from .models import Models
 from .notices import Notices
+from .overlay_panel import add_look
 from .panel import Panel
 from .plot import PlotPanel
 from .polled import Polled
 from .scene import SceneView
-from .show import add_look
 from .simulator import Simulator
 from .site import Site
 from .start_view import StartView
+from .time_control import TimePanel
 from .topics import TopicPanel
 from .views import look
 from .world_name import WorldName
@@ -67,7 +67,7 @@ class Page:
         models = Models()
         self._start = StartView(models)
         name = WorldName(site.gui)
-        self._bar = Bar(site.gui, simulator.time, self._notify)
+        self._time = TimePanel(site.gui, simulator.time, self._notify)
         history = History(site.gui, self._notify)
         clock = Clock(site.gui)
         scene = SceneView(site, self._click)
@@ -77,7 +77,7 @@ class Page:
             models,
             self._start,
             scene,
-            self._bar,
+            self._time,
             clock,
             name,
             history,
@@ -154,7 +154,7 @@ class Page:
         with self._lock:
             if self._is_open and not self._lost and now - self._heard > SILENCE:
                 self._lost = True
-                self._bar.warn(GONE)
+                self._time.warn(GONE)
 
     def _enter(self, client: viser.ClientHandle) -> None:
         with self._lock:
@@ -223,7 +223,7 @@ class Page:
             self._heard = time.monotonic()
             if self._lost:
                 self._lost = False
-                self._bar.warn('')
+                self._time.warn('')
                 self._notify(BACK)
             self._motions.take(motion)
 

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Protocol
 
 from ..sim.description import SceneChange, ShownMotion
-from .bar import TimeControl
 from .change import Inspection
 from .contacts import Contacts
 from .downloads import Worlds
@@ -16,6 +15,7 @@ from .insert import Library
 from .joints import Joints
 from .maps import Maps
 from .plot import Signals
+from .time_control import TimeControl
 from .topics import ShownTopics
 
 

@@ -16,7 +16,7 @@ from rosbots_description.web.client_messages import KINDS
 from rosbots_description.web.door import Pass
 from rosbots_description.web.gate import LOOKS, OF_VIEWERS
 from rosbots_description.web.gizmo import NODE
-from rosbots_description.web.markers import MARKERS
+from rosbots_description.web.overlays import OVERLAYS
 
 BOX = '/models/box/link'
 UPLOAD = 'Upload URDF, xacro or SDF'
@@ -120,7 +120,7 @@ ALLOWED = {
     '\u2514 link',
     'other',
     'Only of what is selected',
-    *MARKERS,
+    *OVERLAYS,
     'Picture',
 }
 ALLOWED_KEYS = {'escape', '?', 'H', 'T', 'F', 'X', 'G', 'V'}

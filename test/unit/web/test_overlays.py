@@ -1,4 +1,4 @@
-"""What else is shown in the scene, and cameras that follow."""
+"""Overlays of links, contacts, how visuals are drawn, and cameras that follow."""
 
 import math
 
@@ -21,7 +21,7 @@ from rosbots_description.sim.description import (
     ShownLink,
     ShownModel,
 )
-from rosbots_description.web.markers import MARKERS, equal_box
+from rosbots_description.web.overlays import OVERLAYS, equal_box
 
 TURNED = Pose((0.0, 0.0, 0.5), from_rpy(0.0, 0.0, math.pi / 2.0))
 ARM = ShownLink(
@@ -58,7 +58,7 @@ def nodes(browser, path):
     }
 
 
-@pytest.mark.parametrize('name', MARKERS)
+@pytest.mark.parametrize('name', OVERLAYS)
 def test_what_is_checked_is_shown_as_a_part_of_each_link(browser, simulator, name):
     simulator.change(SceneChange(True, (ROBOT,)))
     path = f'/models/robot/arm/{name}'

@@ -1,4 +1,4 @@
-"""What else is shown in the scene: frames, collision shapes, masses, and how visuals look."""
+"""The choice of overlays, and of how visuals are drawn."""
 
 import threading
 
@@ -6,8 +6,8 @@ import viser
 
 from ..sim.description import SceneChange, ShownModel
 from ..sim.rendering import Look
-from .markers import MARKERS
 from .nodes import link_node
+from .overlays import OVERLAYS
 from .panel import Panel
 from .scene import SceneView
 from .selection import Selection
@@ -25,20 +25,17 @@ def add_look(gui: viser.GuiApi, view: SceneView, lock: threading.RLock) -> None:
     choice.on_update(draw)
 
 
-class ShowPanel(Panel):
-    """Boxes to check, of one browser; what is shown of a link moves along with its node."""
+class OverlayPanel(Panel):
+    """A checkbox for each overlay, of one browser; overlays of a link move along with its node."""
 
     def __init__(
-        self,
-        client: viser.ClientHandle,
-        selection: Selection,
-        allow_viewers: Allow,
+        self, client: viser.ClientHandle, selection: Selection, allow_viewers: Allow
     ) -> None:
         self._client, self._selection = client, selection
         self._shown: dict[str, list[str]] = {}  # nodes, by models
         gui = client.gui
         self._only = gui.add_checkbox('Only of what is selected', False)
-        self._boxes = {name: gui.add_checkbox(name, False) for name in MARKERS}
+        self._boxes = {name: gui.add_checkbox(name, False) for name in OVERLAYS}
         for box in (self._only, *self._boxes.values()):
             box.on_update(lambda _: self.draw())
             allow_viewers(box)
@@ -73,7 +70,7 @@ class ShowPanel(Panel):
             if not only or chosen in (None, link.name):
                 for name in names:
                     path = f'{link_node(model.name, link.name)}/{name}'
-                    MARKERS[name](self._client.scene, path, model, link)
+                    OVERLAYS[name](self._client.scene, path, model, link)
                     shown.append(path)
 
     def _erase(self, model: str) -> None:

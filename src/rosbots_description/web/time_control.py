@@ -35,7 +35,7 @@ class TimeControl(Protocol):
         """Set the target real-time factor; 0: as fast as possible."""
 
 
-class Bar(Panel):
+class TimePanel(Panel):
     """Controls for all browsers alike."""
 
     def __init__(
@@ -82,7 +82,7 @@ class Bar(Panel):
             self._play.icon = viser.Icon.PLAYER_PLAY if motion.paused else viser.Icon.PLAYER_PAUSE
 
     def warn(self, sentence: str) -> None:
-        """Show a sentence above the bar until it is withdrawn with ''."""
+        """Show a sentence above the controls until it is withdrawn with ''."""
         self._warning.show('', bold=sentence)
         self._warning.visible = bool(sentence)
 

@@ -1,4 +1,4 @@
-"""What is shown of a link besides what can be seen of it: shapes in its frame."""
+"""Overlays of a link: its frame, joint axes, collision shapes, centre of mass and inertia."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -19,7 +19,7 @@ AXIS_LENGTH = 0.25  # of the arrow along the axis of a joint [m]
 LEAD = 11340.0  # density [kg/m^3] of a ball as heavy as the link, which marks its centre of mass
 
 # Adds nodes to the scene below a path, which is that of the link's node.
-Marker = Callable[[viser.SceneApi, str, ShownModel, ShownLink], None]
+Overlay = Callable[[viser.SceneApi, str, ShownModel, ShownLink], None]
 
 
 def frame(scene: viser.SceneApi, path: str, _model: ShownModel, _link: ShownLink) -> None:
@@ -106,7 +106,7 @@ def equal_box(inertial: Inertial) -> tuple[Vector, tuple[float, float, float, fl
     return (x, y, z), orientation
 
 
-MARKERS: Mapping[str, Marker] = {
+OVERLAYS: Mapping[str, Overlay] = {
     'Frames': frame,
     'Joint axes': joint_axes,
     'Collision shapes': collisions,

@@ -1,10 +1,10 @@
-"""How many of something are allowed in a time."""
+"""A limit on how often something may happen."""
 
 import time
 
 
-class Allowance:
-    """So many at once, and so many more in each second of wall time."""
+class RateLimit:
+    """A token bucket: so many at once, and so many more in each second of wall time."""
 
     def __init__(self, at_once: float, rate: float) -> None:
         """Begin with all of them allowed.
