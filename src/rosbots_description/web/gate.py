@@ -20,7 +20,7 @@ from .client_messages import MalformedError, Message, RefusedError, check_value,
 from .door import CONTROLS
 from .notices import left_out, show
 from .rate_limit import RateLimit
-from .uploads import Upload, Uploads, content
+from .uploads import Upload, Uploads
 
 logger = logging.getLogger(__name__)
 
@@ -240,31 +240,27 @@ class Gate:
         if button not in self._receivers or self._control(visitor, button) is None:
             raise MalformedError('This is no button for files.')
         try:
-            whole = self._uploads.start(visitor, message)
+            upload = self._uploads.start(visitor, message)
         except RefusedError:
             self._acknowledge(visitor, message, message.size_bytes)  # ends it in the browser
             raise
-        if whole is not None:
+        if upload.is_whole:
             self._acknowledge(visitor, message, 0)
-            self._hand_over(visitor, whole)
+            self._hand_over(visitor, upload)
 
     def _add(self, visitor: Visitor, message: Message) -> None:
         try:
-            upload, is_whole = self._uploads.add(visitor, message)
+            upload = self._uploads.add(visitor, message)
         except RefusedError:
             self._acknowledge(visitor, message, 0)
             raise
         if upload is not None:
             self._acknowledge(visitor, message, upload.size, upload.received)
-            if is_whole:
+            if upload.is_whole:
                 self._hand_over(visitor, upload)
 
     def _acknowledge(
-        self,
-        visitor: Visitor,
-        message: Message,
-        size: int,
-        received: int | None = None,
+        self, visitor: Visitor, message: Message, size: int, received: int | None = None
     ) -> None:
         """Let a browser show how much of its file has come; by default, all of it."""
         client = self._client(visitor)
@@ -283,9 +279,8 @@ class Gate:
         if client is not None:
             executor: Executor = self._site._thread_executor
             _, received = self._receivers[upload.button]
-            executor.submit(received, client, upload.name, content(upload)).add_done_callback(
-                _log_failure
-            )
+            done = executor.submit(received, client, upload.name, upload.content)
+            done.add_done_callback(_log_failure)
 
     def _notify(self, visitor: Visitor, sentence: str) -> None:
         """Tell a browser what is refused; of many at once the first, and how many others."""

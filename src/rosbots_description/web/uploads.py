@@ -14,7 +14,7 @@ PATIENCE = 30.0  # [s, wall] without a part after which a file makes room for an
 
 @dataclass
 class Upload:
-    """A file of which parts are missing."""
+    """A file, of which parts may be missing."""
 
     owner: object
     button: str  # its number
@@ -24,6 +24,16 @@ class Upload:
     parts: dict[int, bytes] = field(default_factory=dict)
     received: int = 0  # bytes
     newest: float = 0.0  # when a part came last [s, monotonic]
+
+    @property
+    def is_whole(self) -> bool:
+        """Tell whether no part is missing."""
+        return len(self.parts) == self.count
+
+    @property
+    def content(self) -> bytes:
+        """Return the bytes of a file that is whole."""
+        return b''.join(self.parts[number] for number in range(self.count))
 
 
 class Uploads:
@@ -35,8 +45,8 @@ class Uploads:
     def __len__(self) -> int:
         return len(self._running)
 
-    def start(self, owner: object, message: Message) -> Upload | None:
-        """Begin a file; return it if it is empty, and so complete.
+    def start(self, owner: object, message: Message) -> Upload:
+        """Begin a file; one without parts is whole.
 
         Raises:
             RefusedError: it is too large, or there are too many.
@@ -66,27 +76,25 @@ class Uploads:
             message.part_count,
             newest=now,
         )
-        if upload.count == 0:
-            return upload
-        self._running[message.transfer_uuid] = upload
-        return None
+        if not upload.is_whole:
+            self._running[message.transfer_uuid] = upload
+        return upload
 
-    def add(self, owner: object, message: Message) -> tuple[Upload | None, bool]:
-        """Add a part; return its file, None for one that was refused, and whether it is whole.
+    def add(self, owner: object, message: Message) -> Upload | None:
+        """Add a part; return its file, None for one that was refused.
 
         Raises:
             RefusedError: the file has more bytes than it is to have.
         """
         upload = self._running.get(message.transfer_uuid)
         if upload is None or upload.owner is not owner:
-            return None, False
+            return None
         if not 0 <= message.part_index < upload.count or message.part_index in upload.parts:
             raise MalformedError('This is no part of the file.')
         upload.parts[message.part_index] = message.content
         upload.received += len(message.content)
         upload.newest = time.monotonic()
-        is_whole = len(upload.parts) == upload.count
-        if upload.received > upload.size or (is_whole and upload.received < upload.size):
+        if upload.received > upload.size or (upload.is_whole and upload.received < upload.size):
             del self._running[message.transfer_uuid]
             raise RefusedError(
                 _too_large(upload.name)
@@ -94,18 +102,13 @@ class Uploads:
                 else f"'{upload.name}' has {upload.received} bytes of the {upload.size} that were "
                 'announced; upload it again'
             )
-        if is_whole:
+        if upload.is_whole:
             del self._running[message.transfer_uuid]
-        return upload, is_whole
+        return upload
 
     def leave(self, owner: object) -> None:
         """Drop the files of a browser that has disconnected."""
         self._running = {key: one for key, one in self._running.items() if one.owner is not owner}
-
-
-def content(upload: Upload) -> bytes:
-    """Return the bytes of a file that is whole."""
-    return b''.join(upload.parts[number] for number in range(upload.count))
 
 
 def _too_large(name: str) -> str:

@@ -72,12 +72,7 @@ class RosGoals:
         return sorted(topics, key=lambda topic: not topic.endswith(name))
 
     def _send(
-        self,
-        topic: str,
-        message: genpy.Message,
-        frame: str,
-        field: PoseMessage,
-        pose: Pose,
+        self, topic: str, message: genpy.Message, frame: str, field: PoseMessage, pose: Pose
     ) -> None:
         message.header.frame_id, message.header.stamp = frame, rospy.Time.now()
         fill_pose(field, pose)
