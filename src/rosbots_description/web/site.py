@@ -69,7 +69,7 @@ class Site(viser.ViserServer):
         self._gate = gate = Gate(self, most_viewers)
         door = Door(host, port, self.token, self.viewing_token, page_headers(is_framed))
         rich.reconfigure(quiet=True)  # viser's own lines
-        logging.getLogger('websockets.server').addFilter(_NO_NOISE)
+        logging.getLogger('websockets.server').addFilter(_is_kept)
         # Somebody has left, which is no fault.
         warnings.filterwarnings('ignore', r'Queued a \w+ on a closed connection')
         # Viser looks for a free port by itself and takes no socket and no guard.
@@ -106,15 +106,9 @@ class Site(viser.ViserServer):
         return None
 
 
-class _NoNoise(logging.Filter):
-    """Drops what strangers could fill the log with."""
-
-    def filter(self, record: logging.LogRecord) -> bool:
-        """Keep what is wrong with connections that are open."""
-        return 'handshake' not in record.getMessage() and 'rejected' not in record.getMessage()
-
-
-_NO_NOISE = _NoNoise()
+def _is_kept(record: logging.LogRecord) -> bool:
+    """Keep what is wrong with open connections, and drop what strangers could fill the log with."""
+    return 'handshake' not in record.getMessage() and 'rejected' not in record.getMessage()
 
 
 def _serving(listener: socket.socket, door: Door, gate: Gate) -> Callable[..., object]:
