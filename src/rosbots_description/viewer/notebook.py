@@ -37,24 +37,17 @@ class ShownViewer(Viewer):
 
     def __init__(self, world: World, port: int, height: int) -> None:
         """Begin to serve; see `World.show`."""
-        super().__init__(world, open_site(port, is_framed=True), paused=_shell() is not None)
+        shell = _shell()
+        super().__init__(world, open_site(port, is_framed=True), paused=shell is not None)
         self._height = height
+        self._turns = None if shell is None else Turns(self, shell.events)
         world.run_by(self.run)
         world.resources.callback(self.close)
-        shell = _shell()
-        if shell is not None:
-            self._turns = Turns(self)
-            shell.events.register('pre_run_cell', self._turns.begin_cell)
-            shell.events.register('post_run_cell', self._turns.end_cell)
 
     def close(self) -> None:
         """Stop serving; the world runs on its own again."""
-        shell, turns = _shell(), getattr(self, '_turns', None)
-        if turns is not None and not turns.is_over:
-            turns.end()
-            if shell is not None:
-                shell.events.unregister('pre_run_cell', turns.begin_cell)
-                shell.events.unregister('post_run_cell', turns.end_cell)
+        if self._turns is not None:
+            self._turns.end()
         self._world.run_by(None)
         super().close()
 
@@ -76,14 +69,16 @@ class ShownViewer(Viewer):
 class Turns:
     """Lets cells and the page take turns with a world; it begins within a cell."""
 
-    def __init__(self, viewer: Viewer) -> None:
-        self._viewer = viewer
+    def __init__(self, viewer: Viewer, events: _Events) -> None:
+        self._viewer, self._events = viewer, events
         self.is_over = False
         self._is_free = threading.Event()  # no cell runs or waits
         self._owner = threading.Lock()
         self._has_cell = True
         self._owner.acquire()
         threading.Thread(target=self._run, name='world', daemon=True).start()
+        events.register('pre_run_cell', self.begin_cell)
+        events.register('post_run_cell', self.end_cell)
 
     def begin_cell(self, *_information: object) -> None:
         """Take the world from the page, once it has made its step."""
@@ -100,9 +95,12 @@ class Turns:
             self._is_free.set()
 
     def end(self) -> None:
-        """Leave the world to cells from now on."""
-        self.is_over = True
-        self._is_free.set()
+        """Leave the world to cells from now on; idempotent."""
+        if not self.is_over:
+            self.is_over = True
+            self._is_free.set()
+            self._events.unregister('pre_run_cell', self.begin_cell)
+            self._events.unregister('post_run_cell', self.end_cell)
 
     def _run(self) -> None:
         while not self.is_over:
