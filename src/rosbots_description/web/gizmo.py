@@ -54,7 +54,7 @@ class Drag:
         self._released.set()
 
     def give_way(self) -> None:
-        """End without a further command: another browser has grabbed the model."""
+        """End without a further command: the model is another browser's, or nothing is selected."""
         self._is_taken_over = True
         self._released.set()
 
@@ -155,7 +155,11 @@ class Gizmo(Panel):
         if self._selection.model == self._model:
             return  # only its link is another
         self._model = self._selection.model
-        self._release()
+        with self._lock:
+            if self._drag is not None:
+                # Without a selection the model is deleted next, perhaps; else it goes after `HOLD`.
+                end = self._drag.give_way if self._model is None else self._drag.release
+                end()
         if self._handle is not None:
             self._handle.remove()
             self._handle = None

@@ -208,6 +208,14 @@ def test_of_two_browsers_the_one_that_grabbed_last_moves_it(chosen, simulator, s
     assert (8.0, 0.0, 0.0) not in moves(simulator)
 
 
+def test_model_that_is_deleted_while_it_is_dragged_is_not_let_go(chosen, simulator):
+    grab(chosen, simulator)
+    chosen.press('delete')
+    chosen.wait_until(lambda: chosen.control("Undo: delete 'a'"))
+    chosen.wait_until(lambda: is_free(chosen, simulator))
+    assert all(duration for *_, duration in simulator.done('hold'))
+
+
 def test_model_that_goes_ends_the_drag_in_a_sentence(chosen, simulator):
     grab(chosen, simulator)
     simulator.fault = 'HoldModel: model does not exist'
