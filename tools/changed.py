@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import ast
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -136,7 +136,7 @@ def dependencies(path: Path) -> frozenset[Path]:
 def imports(path: Path) -> frozenset[Path]:
     """Return the files of this project that a file imports directly."""
     found: set[Path] = set()
-    for node in ast.walk(ast.parse(path.read_bytes())):
+    for node in statements(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Import):
             for name in node.names:
                 found |= absolute(name.name)
@@ -147,21 +147,40 @@ def imports(path: Path) -> frozenset[Path]:
     return frozenset(found)
 
 
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the statements below a node, for those alone can be imports."""
+    for field in ('body', 'orelse', 'finalbody', 'handlers', 'cases'):
+        below = getattr(node, field, ())
+        for one in below if isinstance(below, list) else ():
+            yield one
+            yield from statements(one)
+
+
 def absolute(name: str) -> set[Path]:
     """Return the files of a module; the companions' name of the product is another for it."""
-    name = name.replace('rosbots_simulator', 'rosbots_description', 1)
-    return {one for place in PLACES for one in module(place.joinpath(*name.split('.')))}
+    name = name.replace('rosbots_simulator', 'rosbots_description', 1).replace('.', '/')
+    return {one for place in PLACES for one in module(f'{place}/{name}')}
 
 
-def relative(path: Path, level: int, name: str) -> set[Path]:
+def relative(path: Path, level: int, name: str) -> frozenset[Path]:
     """Return the files of a module that is named relative to a file; none without a name."""
-    return module(path.parents[level - 1].joinpath(*name.split('.'))) if name else set()
+    folder = path.parents[level - 1]
+    return module(f'{folder}/{name.replace(".", "/")}') if name else frozenset()
 
 
-def module(place: Path) -> set[Path]:
+@cache
+def module(place: str) -> frozenset[Path]:
     """Return the file of a module, or all files of a package; none if there is none."""
-    if place.with_suffix('.py').is_file():
-        return {place.with_suffix('.py')}
-    if (place / '__init__.py').is_file() and place != ROOT / 'src' / 'rosbots_description':
-        return set(place.rglob('*.py'))
-    return {one} if (one := place / '__init__.py').is_file() else set()
+    if Path(f'{place}.py').is_file():
+        return frozenset({file(f'{place}.py')})
+    start = Path(place, '__init__.py')
+    if not start.is_file():
+        return frozenset()
+    whole = start.parent != ROOT / 'src' / 'rosbots_description'
+    return frozenset(map(file, map(str, start.parent.rglob('*.py') if whole else [start])))
+
+
+@cache
+def file(name: str) -> Path:
+    """Return a path, always the same object: others compare slowly."""
+    return Path(name)
