@@ -141,7 +141,8 @@ def read_gazebo_tags(
     Raises:
         ModelError: a value that must be a finite number is not one.
     """
-    tags = GazeboTags(addresses)
+    tags, names = GazeboTags(addresses), [*links, *joints]
+    links, joints = set(links), set(joints)
     unread: list[str] = []
     for block in robot.findall('gazebo'):
         _leading_numbers(block, tags)
@@ -154,7 +155,7 @@ def read_gazebo_tags(
         if reference in joints:
             _read_joint_block(block, reference, tags, unread if reference not in links else [])
         if reference not in links and reference not in joints:
-            note(tags.notes, partial(_unknown, block, reference, [*links, *joints]))
+            note(tags.notes, partial(_unknown, block, reference, names))
     if unread:
         mentioned = listed(list(dict.fromkeys(unread)), MAX_NOTES)
         tags.notes.append(Fault(f'not simulated in <gazebo> blocks: {mentioned}'))
