@@ -1,9 +1,10 @@
 """Namespaces of one command: its own mounts, network or host name."""
 
 import os
-import subprocess
 
 import pytest
+
+from .programs import ran
 
 # Root may unshare, unless a container forbids it; other users need a user namespace.
 _OWN = () if os.geteuid() == 0 else ('--map-root-user',)
@@ -15,7 +16,7 @@ def unshare(*kinds: str) -> tuple[str, ...]:
     Skips the test where the machine does not permit it.
     """
     command = ('unshare', *_OWN, *(f'--{kind}' for kind in kinds))
-    done = subprocess.run([*command, 'true'], capture_output=True, text=True, check=False)
+    done = ran(*command, 'true')
     if done.returncode:
         pytest.skip(f'this machine does not permit it: {done.stderr.strip()}')
     return command

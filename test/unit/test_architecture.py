@@ -1,17 +1,13 @@
 """Packages: permitted imports, public names only, and a simulator without ROS."""
 
 import ast
-import os
 import re
-import subprocess
-import sys
 from functools import cache
-from pathlib import Path
 
 import pytest
+from support import LIBRARY
+from support.programs import python
 
-SOURCE = Path(__file__).resolve().parents[2] / 'src'
-PACKAGE = SOURCE / 'rosbots_description'
 MESSAGES = re.compile(r'\w+_(msgs|srvs)')
 
 # Permitted imports between folders; imports for type checking count too.
@@ -111,8 +107,8 @@ LATE = {('sim/public', 'viewer')}
 def modules():
     """Return the syntax tree of each module, by its path without suffix."""
     return {
-        path.relative_to(PACKAGE).with_suffix('').as_posix(): ast.parse(path.read_text())
-        for path in sorted(PACKAGE.rglob('*.py'))
+        path.relative_to(LIBRARY).with_suffix('').as_posix(): ast.parse(path.read_text())
+        for path in sorted(LIBRARY.rglob('*.py'))
     }
 
 
@@ -327,12 +323,5 @@ def test_the_simulator_needs_no_ros():
         'for name in sys.argv[1:]: importlib.import_module(name)\n'
         "print(*(name for name in sys.modules if name.endswith(('_msgs', '_srvs'))))"
     )
-    ended = subprocess.run(
-        [sys.executable, '-c', program, *names],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(SOURCE), *sys.path])},
-        check=False,
-    )
+    ended = python(program, *names)
     assert (ended.returncode, ended.stdout.strip(), ended.stderr) == (0, '', '')

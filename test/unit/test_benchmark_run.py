@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from support import ROOT
+from support.programs import ran
 
 BENCHMARK = ROOT / 'benchmark'
 DEADLINE = 60.0  # [s, wall] timeout of what usually takes a second
@@ -129,9 +130,8 @@ def test_estimate_for_soak_follows_its_argument(run):
 
 
 def test_help_readme_and_contributing_list_every_part(run):
-    usage = subprocess.run([ROOT / 'rosbots', 'help'], capture_output=True, text=True, check=True)
     texts = [
-        usage.stdout,
+        ran(ROOT / 'rosbots', 'help').stdout,
         *((ROOT / name).read_text(encoding='utf-8') for name in ('README.md', 'CONTRIBUTING.md')),
     ]
     for text in texts:

@@ -1,26 +1,18 @@
 """The container and the check on GitHub run what ./rosbots has."""
 
 import re
-import subprocess
 
 import yaml
 from support import ROOT
+from support.programs import bash
 
 CONTAINER = (ROOT / 'Containerfile').read_text(encoding='utf-8')
 
 
 def instructions():
     """Return the instructions of the Containerfile, as the bare machine reads them."""
-    done = subprocess.run(
-        [
-            'bash',
-            '-euc',
-            f'source "{ROOT}/tools/bare_machine/container.bash"; '
-            f'instructions "{ROOT}/Containerfile"',
-        ],
-        capture_output=True,
-        text=True,
-        check=True,
+    done = bash(
+        'source "$ROOT/tools/bare_machine/container.bash"; instructions "$ROOT/Containerfile"'
     )
     return [tuple(line.split(' ', 1)) for line in done.stdout.splitlines()]
 

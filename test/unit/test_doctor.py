@@ -5,11 +5,11 @@ import os
 import re
 import runpy
 import shutil
-import subprocess
 import sys
 
 import pytest
 from support import ROOT
+from support.programs import in_setup, ran
 
 DOCTOR = runpy.run_path(str(ROOT / 'tools' / 'doctor.py'))
 ROWS = (
@@ -34,26 +34,12 @@ ROWS = (
 
 
 def doctor(clone, *arguments, **environment):
-    return subprocess.run(
-        [clone / 'rosbots', 'doctor', *arguments],
-        capture_output=True,
-        text=True,
-        env={**os.environ, **environment},
-        timeout=120,
-        check=False,
-    )
+    return ran(clone / 'rosbots', 'doctor', *arguments, env={**os.environ, **environment})
 
 
 def in_doctor(script, **environment):
     """Return what a script prints that has the functions of the doctor."""
-    program = f'source "$ROOT/tools/setup.bash"; source "$ROOT/tools/doctor.bash"; {script}'
-    return subprocess.run(
-        ['bash', '-euc', program],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={'PATH': '/usr/bin:/bin', **environment},
-    ).stdout
+    return in_setup(f'source "$ROOT/tools/doctor.bash"; {script}', **environment).stdout
 
 
 @pytest.fixture
@@ -91,7 +77,6 @@ def test_missing_debian_package_is_named():
     line = in_doctor(
         'choose_sets base; debian_packages() { echo no-such-package; }; missing_modules() { :; }; '
         'state base',
-        ROOT=str(ROOT),
         WORKSPACE='/nowhere',
     )
     assert line == (
@@ -104,10 +89,7 @@ def test_stack_that_is_not_built_is_told_its_command():
         'choose_sets navigation; packages_done() {{ :; }}; python_done() {{ :; }}; '
         'navigation_done() {{ {}; }}; state navigation'
     )
-    said = [
-        in_doctor(script.format(done), ROOT=str(ROOT), WORKSPACE='/nowhere')
-        for done in ('false', 'true')
-    ]
+    said = [in_doctor(script.format(done), WORKSPACE='/nowhere') for done in ('false', 'true')]
     assert said == ['not built; ./rosbots navigation\n', 'ready\n']
 
 
@@ -115,7 +97,6 @@ def test_report_names_no_user_no_machine_and_no_folder_of_theirs():
     text = 'CLONE of ada in /home/ada/rosbots on laptop.lan: ROS_IP=laptop.lan /data/x /home/eve/y'
     shown = in_doctor(
         f'id() {{ echo ada; }}; uname() {{ echo laptop.lan; }}; anonymous "{text}"',
-        ROOT=str(ROOT),
         HOME='/home/ada',
     )
     assert shown == ('CLONE of NAME in ~/rosbots on NAME: ROS_IP=NAME /data/x /home/NAME/y\n')

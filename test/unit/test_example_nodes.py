@@ -5,7 +5,6 @@ import itertools
 import json
 import math
 import os
-import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,8 +13,10 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import Quaternion
 from sensor_msgs.msg import Image
+from support import ROOT
+from support.programs import ran
 
-SCRIPTS = Path(__file__).resolve().parents[2] / 'scripts'
+SCRIPTS = ROOT / 'scripts'
 NODES = ('follow_policy', 'go_to_goal', 'line_follower', 'map_while_driving', 'wander')
 STEP = 0.1  # [s] of the kinematic robots in these tests
 
@@ -46,26 +47,14 @@ def test_a_script_can_be_run_and_read_in_one_sitting(script):
 
 @pytest.mark.parametrize('script', SCRIPTS.glob('*.py'), ids=lambda path: path.stem)
 def test_rosrun_finds_a_script_once(script):
-    found = subprocess.run(
-        ['rosrun', '--prefix', 'echo', 'rosbots_description', script.name],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    found = ran('rosrun', '--prefix', 'echo', 'rosbots_description', script.name, input='')
     assert Path(found.stdout.strip()).samefile(script)
 
 
 @pytest.mark.parametrize('script', sorted({*NODES, 'pick_and_place', 'ros_environment'}))
 def test_a_node_without_a_master_ends_with_one_sentence(script):
-    ended = subprocess.run(
-        [sys.executable, SCRIPTS / f'{script}.py'],
-        env=os.environ | {'ROS_MASTER_URI': 'http://localhost:1'},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    environment = os.environ | {'ROS_MASTER_URI': 'http://localhost:1'}
+    ended = ran(sys.executable, SCRIPTS / f'{script}.py', env=environment, input='')
     assert ended.returncode == 1
     (line,) = ended.stderr.splitlines()
     assert line.startswith(f'{script}: there is no ROS master at http://localhost:1, ')

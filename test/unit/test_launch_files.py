@@ -3,7 +3,6 @@
 import os
 import re
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -14,8 +13,9 @@ from roslaunch.arg_dump import dump_args
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.core import RLException
 from roslaunch.xmlloader import XmlLoader
+from support import ROOT
+from support.programs import ran
 
-ROOT = Path(__file__).resolve().parents[2]
 NAVIGATION = ROOT / 'companions' / 'rosbots_navigation' / 'launch'
 FILES = sorted([*ROOT.glob('launch/*.launch'), *ROOT.glob('companions/*/launch/*.launch')])
 
@@ -134,13 +134,8 @@ def test_windows_are_opened_only_where_there_is_a_display(path):
 
 
 def test_without_a_display_a_sentence_takes_the_place_of_a_window():
-    done = subprocess.run(
-        [ROOT / 'launch' / 'with_display', 'echo', 'started'],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, 'DISPLAY': ':987654'},
-    )
+    environment = {**os.environ, 'DISPLAY': ':987654'}
+    done = ran(ROOT / 'launch' / 'with_display', 'echo', 'started', env=environment)
     assert (done.returncode, done.stdout) == (0, '')
     assert done.stderr == (
         'echo: no window: there is no display to open it on (DISPLAY is :987654)\n'

@@ -1,12 +1,12 @@
 """Lessons consist of steps that a reader can take, and all of them are run."""
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 from support import ROOT
 from support.lessons import LESSONS, Commands, File, LessonError, Shown, missing, read_lesson
+from support.programs import ran
 
 STEPS = [(lesson, step) for lesson in LESSONS for step in read_lesson(lesson)]
 PROGRAMS = [
@@ -170,14 +170,8 @@ def test_commands_within_sentences_are_tested_elsewhere(page):
 
 @pytest.mark.parametrize(('_page', 'step'), PROGRAMS, ids=named)
 def test_programs_are_lint_clean(_page, step):
-    checked = subprocess.run(
-        ['ruff', 'check', '--ignore', IN_LESSONS, '--stdin-filename', step.name, '-'],
-        input=step.text,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    options = ('--ignore', IN_LESSONS, '--stdin-filename', step.name)
+    checked = ran('ruff', 'check', *options, '-', input=step.text, cwd=ROOT)
     assert checked.returncode == 0, checked.stdout + checked.stderr
 
 

@@ -2,10 +2,10 @@
 
 import importlib
 import subprocess
-import sys
 
 import pytest
 from support import ROOT
+from support.programs import python
 
 
 @pytest.fixture(scope='module', name='generated')
@@ -37,8 +37,6 @@ def test_generated_messages_have_the_checksums_of_catkins(generated, package):
         '    assert module.__file__.startswith(sys.path[0])\n'
         '    print(name, getattr(module, name)._md5sum)\n'
     )
-    shown = subprocess.run(
-        [sys.executable, '-c', script], text=True, capture_output=True, check=True
-    )
+    shown = python(script)
     assert files
     assert shown.stdout == expected

@@ -4,7 +4,6 @@ import math
 import re
 import runpy
 import socket
-import subprocess
 import sys
 from types import SimpleNamespace
 from xml.etree import ElementTree
@@ -14,6 +13,7 @@ import pytest
 import rospy
 import yaml
 from support import ROOT, robot_spec, robot_urdf
+from support.programs import ran
 
 from rosbots_description.sim.core import compose
 from rosbots_description.sim.core.arrays import rotation_matrix
@@ -154,13 +154,8 @@ def test_views_are_of_the_map_and_have_the_tools(view, tools):
 
 
 def require(*names, path=''):
-    return subprocess.run(
-        [sys.executable, PACKAGE / 'launch' / 'require_packages', *names],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={'ROS_PACKAGE_PATH': str(path), 'PATH': '/usr/bin:/bin'},
-    )
+    environment = {'ROS_PACKAGE_PATH': str(path), 'PATH': '/usr/bin:/bin'}
+    return ran(sys.executable, PACKAGE / 'launch' / 'require_packages', *names, env=environment)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import yaml
 from support import ROOT
+from support.programs import in_setup, ran
 
 NAVIGATION = ROOT / 'tools' / 'navigation'
 FACTS = yaml.safe_load((ROOT / 'test/data/navigation/manifests.yaml').read_text(encoding='utf-8'))
@@ -72,22 +73,10 @@ def sources(tmp_path):
     return tmp_path
 
 
-def in_setup(script, workspace, **environment):
+def in_navigation(script, workspace, **environment):
     """Run a script with the functions of the set-up, the set navigation chosen."""
-    return subprocess.run(
-        ['bash', '-euc', f'source "$ROOT/tools/setup.bash"; choose_sets navigation; {script}'],
-        env={
-            'ROOT': str(ROOT),
-            'WORKSPACE': str(workspace),
-            'PATH': '/usr/bin:/bin',
-            'HOME': str(workspace),
-            **environment,
-        },
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    folders = dict.fromkeys(('WORKSPACE', 'HOME'), str(workspace))
+    return in_setup(f'choose_sets navigation; {script}', **folders, **environment)
 
 
 def test_sources_are_commits_of_the_repositories_that_the_facts_are_of():
@@ -133,12 +122,7 @@ def test_folders_are_those_of_the_manifests(sources):
 
 def test_incomplete_sources_are_an_error_in_one_sentence(sources):
     (sources / 'navigation' / 'amcl' / 'package.xml').unlink()
-    done = subprocess.run(
-        ['/usr/bin/python3', NAVIGATION / 'build_plan.py', sources],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = ran('/usr/bin/python3', NAVIGATION / 'build_plan.py', sources)
     assert (done.returncode, done.stderr) == (
         1,
         f'rosbots: there is no package amcl in {sources}\n',
@@ -154,9 +138,8 @@ def test_a_circle_of_packages_is_an_error_that_names_them(tmp_path):
 
 @pytest.mark.parametrize('debian', ['12', '13'])
 def test_debian_has_what_the_packages_need_besides_each_other(sources, debian):
-    installed = set(
-        in_setup(f'DEBIAN={debian}; debian_packages "${{CHOSEN[@]}}"', sources).stdout.split()
-    )
+    done = in_navigation(f'DEBIAN={debian}; debian_packages "${{CHOSEN[@]}}"', sources)
+    installed = set(done.stdout.split())
     assert {'git', 'vcstool'} < installed
     plan = {name for name, *_ in PLAN['build_plan'](sources, TARGETS)}
     depends = {
@@ -185,9 +168,7 @@ def commit(folder: Path, **files: str) -> str:
     git = ['git', '-C', str(folder), '-c', 'user.name=a', '-c', 'user.email=a@b.example']
     for command in (['init', '--quiet'], ['add', '.'], ['commit', '--quiet', '-m', 'x']):
         subprocess.run([*git, *command], check=True)
-    return subprocess.run(
-        [*git, 'rev-parse', 'HEAD'], check=True, capture_output=True, text=True
-    ).stdout.strip()
+    return ran(*git, 'rev-parse', 'HEAD').stdout.strip()
 
 
 @pytest.fixture
@@ -219,7 +200,7 @@ def redirected(url):
 
 
 def test_sources_are_got_and_patched(tmp_path, stand_in):
-    done = in_setup(
+    done = in_navigation(
         f'NAVIGATION={stand_in}; get_sources {tmp_path}/sources',
         tmp_path,
         **redirected(tmp_path / 'origin'),
@@ -236,7 +217,7 @@ def test_sources_are_got_and_patched(tmp_path, stand_in):
 
 
 def test_without_a_network_one_sentence_says_so(tmp_path, stand_in):
-    done = in_setup(
+    done = in_navigation(
         f'NAVIGATION={stand_in}; phase "Sources" sources get_sources {tmp_path}/sources',
         tmp_path,
         **redirected('https://127.0.0.1:1/'),
@@ -251,7 +232,7 @@ def test_without_a_network_one_sentence_says_so(tmp_path, stand_in):
 @pytest.mark.parametrize(('free', 'most'), [(100, 1), (1600, 1), (3500, 2), (10**6, None)])
 def test_as_many_compilers_as_memory_allows(tmp_path, free, most):
     (tmp_path / 'meminfo').write_text(f'MemTotal: 1 kB\nMemAvailable: {free * 1000} kB\n')
-    done = in_setup(f'compilers {tmp_path}/meminfo', tmp_path)
+    done = in_navigation(f'compilers {tmp_path}/meminfo', tmp_path)
     processors = len(os.sched_getaffinity(0))
     assert done.stdout == f'{min(most or processors, processors)}\n', done.stderr
 
@@ -261,7 +242,7 @@ def test_stack_is_built_once_and_again_when_its_description_changes(tmp_path):
     (made / 'patches').mkdir(parents=True)
     for name in ('a.repos', 'patches/a.patch'):
         (made / name).touch()
-    done = in_setup(
+    done = in_navigation(
         f'NAVIGATION={made}; say() {{ navigation_done && echo done || echo open; }}; say; '
         'mark_done navigation "$(navigation_fingerprint)"; say; '
         f'echo "-" >> {made}/patches/a.patch; say; choose_sets base; say',
@@ -277,11 +258,11 @@ def test_built_stack_is_in_the_environment(tmp_path):
         'use_navigation; echo "$CMAKE_PREFIX_PATH $ROS_PACKAGE_PATH $PYTHONPATH '
         '${LD_LIBRARY_PATH-}"'
     )
-    assert in_setup(script, tmp_path).stdout == '/ours /ours/src:/usr/share /ours/lib \n'
+    assert in_navigation(script, tmp_path).stdout == '/ours /ours/src:/usr/share /ours/lib \n'
     (tmp_path / 'stamps').mkdir()
     (tmp_path / 'stamps' / 'navigation').touch()
     devel = tmp_path / 'navigation' / 'devel'
-    assert in_setup(script, tmp_path).stdout.split() == [
+    assert in_navigation(script, tmp_path).stdout.split() == [
         f'/ours:{devel}',
         f'/ours/src:{tmp_path}/navigation/src:/usr/share',
         f'/ours/lib:{devel}/lib/python3/dist-packages',

@@ -1,11 +1,7 @@
 """No address in a description or command line makes the simulator open a connection."""
 
-import os
-import subprocess
-import sys
-
 import pytest
-from support import ROOT
+from support.programs import python
 
 # Ends the program at the first connection or name lookup. libxml2 would
 # bypass this; its parsers are created with no_network.
@@ -40,15 +36,7 @@ OBJECT = 'mtllib http://example.org/m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'
 
 def run(code, text=''):
     """Run code with TEXT under the guard; return the last line of its error output."""
-    python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
-    done = subprocess.run(
-        [sys.executable, '-c', f'{GUARD}\nTEXT = {text!r}\n{code}'],
-        capture_output=True,
-        text=True,
-        env={**os.environ, 'PYTHONPATH': python_path},
-        timeout=60,
-        check=False,
-    )
+    done = python(f'{GUARD}\nTEXT = {text!r}\n{code}')
     return (done.stderr.splitlines() or [''])[-1]
 
 

@@ -3,36 +3,20 @@
 import json
 import math
 import os
-import subprocess
-from functools import cache
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from support import ROOT, XACRO, robot_spec, robot_urdf
+from support.programs import ran
 
 from rosbots_description.sim.description.model_spec import Mesh
-from rosbots_description.sim.formats.urdf.urdf import load_urdf
-from rosbots_description.sim.xacro_module import import_xacro
 
-ROOT = Path(__file__).resolve().parents[2]
-XACRO = ROOT / 'urdf' / 'rosbots.xacro'
 ARTICLE = json.loads((ROOT / 'test' / 'data' / 'article_robot.json').read_text(encoding='utf-8'))
 TOLERANCE = 1e-9  # in the unit of each number
 
 
-@cache
-def expanded(**arguments: str) -> str:
-    """Return the URDF text for xacro arguments; the package is that of this file."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(
-            'ROS_PACKAGE_PATH', os.pathsep.join([str(ROOT), os.environ.get('ROS_PACKAGE_PATH', '')])
-        )
-        patch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
-        return import_xacro().process_file(str(XACRO), mappings=arguments).toprettyxml(indent=' ')
-
-
 def robot(**arguments: str) -> ElementTree.Element:
-    return ElementTree.fromstring(expanded(**arguments))
+    return ElementTree.fromstring(robot_urdf(**arguments))
 
 
 def numbers(text: str) -> list:
@@ -270,10 +254,8 @@ def test_one_tf_tree_gives_every_frame_one_parent_below_odom():
 
 def test_check_urdf_accepts_the_robot(tmp_path):
     path = tmp_path / 'rosbots.urdf'
-    path.write_text(expanded(), encoding='utf-8')
-    result = subprocess.run(
-        ['check_urdf', str(path)], capture_output=True, text=True, timeout=60, check=False
-    )
+    path.write_text(robot_urdf(), encoding='utf-8')
+    result = ran('check_urdf', path)
     assert result.returncode == 0, result.stderr
     assert 'root Link: base_footprint' in result.stdout
 
@@ -305,12 +287,9 @@ def test_links_without_colour_are_red_as_in_rviz():
         if visual.find('material') is None and visual.find('geometry/mesh') is None
     }
     assert red == colourless
-    spec, _ = load_urdf(
-        expanded(), 'rosbots', robot_namespace='/', find_package=lambda _: str(ROOT)
-    )
     shown = {
         visual.material and visual.material.rgba
-        for link in spec.links
+        for link in robot_spec().links
         for visual in link.visuals
         if not isinstance(visual.geometry, Mesh)
     }

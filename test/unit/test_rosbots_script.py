@@ -2,24 +2,17 @@
 
 import os
 import re
-import subprocess
 import sys
 
 import pytest
 from support import ROOT
+from support.programs import ran
 from support.surroundings import unshare
 
 
 def rosbots(*arguments, script='', prefix=(), **environment):
-    return subprocess.run(
-        [*prefix, ROOT / 'rosbots', *arguments],
-        input=script,
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    command = (*prefix, ROOT / 'rosbots', *arguments)
+    return ran(*command, input=script, env={**os.environ, **environment})
 
 
 @pytest.mark.parametrize(
@@ -138,16 +131,15 @@ def test_command_in_the_list_installs_the_optional_packages(tmp_path):
     (tmp_path / 'sudo').chmod(0o755)
     text = (ROOT / 'requirements' / 'optional.apt').read_text()
     (command,) = re.findall('^# All of them: (.*)', text, re.M)
-    shown = subprocess.run(
-        ['sh', '-c', command],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        env={'PATH': f'{tmp_path}:/usr/bin:/bin'},
-        check=True,
-    ).stdout.split()
+    done = ran('sh', '-c', command, cwd=ROOT, env={'PATH': f'{tmp_path}:/usr/bin:/bin'})
     packages = [line for line in text.splitlines() if line and not line.startswith('#')]
-    assert shown == ['apt-get', 'install', '-y', '--no-install-recommends', *packages]
+    assert done.stdout.split() == [
+        'apt-get',
+        'install',
+        '-y',
+        '--no-install-recommends',
+        *packages,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -249,14 +241,8 @@ exec "$@"
 
 
 def on_full_disks(places, *command, **environment):
-    done = subprocess.run(
-        [*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, '--', *command],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    fill = (*unshare('mount'), 'sh', '-c', FILL, 'sh', *places, '--')
+    done = ran(*fill, *command, env=os.environ | environment)
     if done.returncode == 77:
         pytest.skip(f'this machine lets nobody mount a disk: {done.stderr.strip()}')
     return done

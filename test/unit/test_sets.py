@@ -3,10 +3,11 @@
 import re
 import runpy
 import shutil
-import subprocess
+from functools import partial
 
 import pytest
 from support import ROOT
+from support.programs import in_setup, ran
 
 REQUIREMENTS = ROOT / 'requirements'
 # Of which commands ask for one.
@@ -19,27 +20,19 @@ def entries(path):
     return [line for line in lines if line]
 
 
-def in_setup(script, debian='12', architecture='amd64'):
+def lines_of(script, debian='12', architecture='amd64'):
     """Return the lines that a script prints, with the functions of the set-up, on a platform."""
-    program = (
-        f'source "$ROOT/tools/setup.bash"; DEBIAN={debian} ARCHITECTURE={architecture}; {script}'
-    )
-    done = subprocess.run(
-        ['bash', '-euc', program],
-        env={'ROOT': str(ROOT), 'PATH': '/usr/bin:/bin'},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    done = in_setup(f'DEBIAN={debian} ARCHITECTURE={architecture}; {script}')
+    assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
 
 
 def debian_packages(name, **platform):
-    return set(in_setup(f'with_included {name}; debian_packages "${{CHOSEN[@]}}"', **platform))
+    return set(lines_of(f'with_included {name}; debian_packages "${{CHOSEN[@]}}"', **platform))
 
 
 def python_packages(name, **platform):
-    lines = in_setup(f'with_included {name}; python_requirements "${{CHOSEN[@]}}"', **platform)
+    lines = lines_of(f'with_included {name}; python_requirements "${{CHOSEN[@]}}"', **platform)
     return {re.split('[=; ]', line)[0] for line in lines}
 
 
@@ -53,12 +46,7 @@ def sets_of(tmp_path):
         f'SETS=({" ".join(SETS)}); set_up() {{ echo "$@"; exit; }}'
     )
 
-    def run(*arguments):
-        return subprocess.run(
-            [tmp_path / 'rosbots', *arguments], capture_output=True, text=True, check=False
-        )
-
-    return run
+    return partial(ran, tmp_path / 'rosbots')
 
 
 @pytest.mark.parametrize(
@@ -103,12 +91,12 @@ def test_files_are_those_of_the_sets():
 
 @pytest.mark.parametrize('name', [INNER, *SETS])
 def test_first_line_says_what_a_set_is_for_and_how_large_it_is(name):
-    (line,) = in_setup(f'purpose {name}')
+    (line,) = lines_of(f'purpose {name}')
     assert re.fullmatch(r'[a-z].+: .*\d+ [MG]B of .* packages.*', line)
 
 
 def test_included_sets_come_first_and_once():
-    assert in_setup('with_included gym test; echo "${CHOSEN[@]}"') == [
+    assert lines_of('with_included gym test; echo "${CHOSEN[@]}"') == [
         'core demo base gym web batch doc test'
     ]
 

@@ -2,7 +2,6 @@
 
 import re
 import socket
-import subprocess
 import threading
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, HTTPServer
@@ -10,18 +9,12 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 from support import ROOT
+from support.programs import bash, in_setup
 
 
 def set_up(script, workspace):
     """Run a script with the functions of the set-up; return exit code and errors."""
-    done = subprocess.run(
-        ['bash', '-euc', f'source "$ROOT/tools/setup.bash"; choose_sets base; {script}'],
-        env={'ROOT': str(ROOT), 'WORKSPACE': str(workspace), 'PATH': '/usr/bin:/bin'},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = in_setup(f'choose_sets base; {script}', WORKSPACE=str(workspace))
     return done.returncode, done.stderr
 
 
@@ -115,13 +108,7 @@ def test_python_is_that_of_the_workspace_under_either_catkin():
         assert f'\n{name}:' in cache
         assert f'={program}\n' in cache.partition(f'\n{name}:')[2][:300]
     (line,) = re.findall('^    catkin_make -D.*', (ROOT / 'README.md').read_text('utf-8'), re.M)
-    shown = subprocess.run(
-        ['bash', '-c', f'catkin_make() {{ echo "$@"; }}; {line}'],
-        env={'HOME': '/home/me'},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    shown = bash(f'catkin_make() {{ echo "$@"; }}; {line}', HOME='/home/me')
     python = '/home/me/rosbots/.ws/venv/bin/python3'
     assert shown.stdout.split() == [
         f'-D{name}_EXECUTABLE={python}' for name in ('PYTHON', 'Python')
@@ -148,20 +135,8 @@ def serving(server):
 
 
 def require_master_port(uri, *arguments):
-    done = subprocess.run(
-        [
-            'bash',
-            '-euc',
-            'source "$ROOT/tools/environment.bash"; require_master_port "$@"',
-            'bash',
-            *arguments,
-        ],
-        env={'ROOT': str(ROOT), 'ROS_MASTER_URI': uri, 'PATH': '/usr/bin:/bin'},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    script = 'source "$ROOT/tools/environment.bash"; require_master_port "$@"'
+    done = bash(script, *arguments, ROS_MASTER_URI=uri)
     return done.returncode, done.stderr
 
 

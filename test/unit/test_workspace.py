@@ -1,9 +1,8 @@
 """The links of the catkin workspace: what is right stays, as programs may be running from it."""
 
-import subprocess
-
 import pytest
 from support import ROOT
+from support.programs import bash
 
 PACKAGES = ('gazebo_ros', 'rosbots_simulator')
 CONFIGURED = ('CMakeLists.txt', 'package.xml', 'setup.py', 'src')  # what CMake reads of our robot
@@ -20,14 +19,10 @@ def clone(tmp_path):
 
 
 def run(clone, function):
-    program = f'set -euo pipefail; source {ROOT}/tools/setup/workspace.bash; {function}'
-    return subprocess.run(
-        ['bash', '-c', program],
-        check=True,
-        stdout=subprocess.PIPE,
-        text=True,
-        env={'PATH': '/usr/bin:/bin', 'ROOT': str(clone), 'WORKSPACE': str(clone / '.ws')},
-    ).stdout
+    program = f'set -o pipefail; source {ROOT}/tools/setup/workspace.bash; {function}'
+    done = bash(program, ROOT=str(clone), WORKSPACE=str(clone / '.ws'))
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 def link(clone):

@@ -2,12 +2,12 @@
 
 import json
 import os
-import subprocess
 import tempfile
 from pathlib import Path
 
 import pytest
 from support.listening import listening
+from support.programs import ran
 
 from rosbots_description.batch import cluster
 from rosbots_description.cli.launched import descendants
@@ -152,12 +152,10 @@ def test_another_user_reaches_nothing_of_a_batch(place):
             'sockets': [str(path) for path in inside if path.is_socket()],
             'folders': [str(path) for path in inside if path.is_dir()],
         }
-        ended = subprocess.run(
-            ['/usr/bin/python3', '-I', '-c', STRANGER],
-            check=False,
+        ended = ran(
+            *('/usr/bin/python3', '-I', '-c', STRANGER),
+            timeout=None,
             input=json.dumps(plan),
-            text=True,
-            capture_output=True,
             user=OTHER,
             group=OTHER,
             extra_groups=[],

@@ -1,17 +1,15 @@
 """gzserver's command line: Gazebo's options are accepted; those without effect are reported."""
 
 import logging
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
+from support import ROOT
+from support.programs import python
 
 from rosbots_description.cli.gzserver import main, parser, remarks, split_remappings
 from rosbots_description.ros_api.node import node
 
-REQUIREMENTS = Path(__file__).resolve().parents[3] / 'requirements' / 'core.pip'
+REQUIREMENTS = ROOT / 'requirements' / 'core.pip'
 
 
 def _read(line):
@@ -116,14 +114,7 @@ def test_missing_module_is_one_error_line(requirement):
         f"import sys; sys.modules['{module}'] = None; "
         'from rosbots_description.cli.gzserver import main; sys.exit(main([]))'
     )
-    ended = subprocess.run(
-        [sys.executable, '-c', program],
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    ended = python(program)
     assert ended.returncode == 1
     (line,) = ended.stderr.splitlines()
     assert line.endswith(f'pip install {requirement}')

@@ -1,9 +1,7 @@
 """What threads have freed can be used by others, and large pieces go back to the system."""
 
-import subprocess
-import sys
-
 import pytest
+from support.programs import python
 
 # Each program ends with how much memory it has gained, in pieces of the size that it uses.
 BEGIN = """
@@ -49,13 +47,7 @@ print((resident() - before) / (1_000_000 * 50))
 
 
 def gained(program, call):
-    ended = subprocess.run(
-        [sys.executable, '-c', BEGIN.format(call=call) + program],
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    return float(ended.stdout)
+    return float(python(BEGIN.format(call=call) + program).stdout)
 
 
 @pytest.mark.skipif('not __import__("platform").libc_ver()[0] == "glibc"', reason='of glibc')

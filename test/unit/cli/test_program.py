@@ -7,6 +7,7 @@ import textwrap
 
 import pytest
 from support import ROOT
+from support.programs import python, ran_by_python
 
 # Prints its arguments and encodings; its argument is a file to write.
 PROGRAM = textwrap.dedent("""\
@@ -99,14 +100,8 @@ def test_process_is_named_after_the_program(tmp_path):
         """),
         encoding='utf-8',
     )
-    done = subprocess.run(
-        [sys.executable, program],
-        env={'PYTHONPATH': str(ROOT / 'src')},
-        capture_output=True,
-        timeout=60,
-        check=False,
-    )
-    assert (done.returncode, done.stdout) == (0, b'gzserver\n')
+    done = ran_by_python(program)
+    assert (done.returncode, done.stdout) == (0, 'gzserver\n')
 
 
 INTERRUPTED = textwrap.dedent("""\
@@ -122,14 +117,8 @@ INTERRUPTED = textwrap.dedent("""\
 
 
 def test_unexpected_ctrl_c_ends_silently():
-    done = subprocess.run(
-        [sys.executable, '-c', INTERRUPTED],
-        env={'PYTHONPATH': str(ROOT / 'src')},
-        capture_output=True,
-        timeout=60,
-        check=False,
-    )
-    assert (done.returncode, done.stderr) == (130, b'')
+    done = python(INTERRUPTED)
+    assert (done.returncode, done.stderr) == (130, '')
 
 
 @pytest.mark.parametrize(

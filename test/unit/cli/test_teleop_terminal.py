@@ -3,19 +3,15 @@
 import contextlib
 import os
 import pty
-import subprocess
-import sys
 import termios
 import time
-from pathlib import Path
 
 import pytest
 from support.patience import PATIENCE
+from support.programs import ran_by_python
 
 from rosbots_description.cli.key_terminal import read_key, single_keys
 from rosbots_description.cli.teleop_twist_keyboard import Settings
-
-SOURCE = Path(__file__).resolve().parents[3] / 'src'
 
 
 def _always():
@@ -70,19 +66,11 @@ def test_hangup_of_the_terminal_is_end_of_file(terminal):
 
 
 def test_missing_terminal_is_an_error():
-    program = subprocess.run(
-        [
-            sys.executable,
-            '-c',
-            'import sys; sys.modules["rospy"] = None\n'
-            'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())',
-        ],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE,
-        check=False,
-        env={**os.environ, 'PYTHONPATH': str(SOURCE)},
+    program = ran_by_python(
+        '-c',
+        'import sys; sys.modules["rospy"] = None\n'
+        'from rosbots_description.cli.teleop_twist_keyboard import main; sys.exit(main())',
+        input='',
     )
     assert program.returncode == 1
     assert 'not a terminal' in program.stderr and 'Traceback' not in program.stderr

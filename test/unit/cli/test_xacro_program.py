@@ -1,11 +1,10 @@
 """The executable xacro expands files for the xacro of Noetic and of older releases."""
 
-import os
-import subprocess
 import sys
 
 import pytest
 from support import ROOT
+from support.programs import ran_by_python
 
 from rosbots_description.cli import xacro_program
 
@@ -20,20 +19,8 @@ def expand(request, tmp_path):
     def run(inside):
         (tmp_path / 'wheels.yaml').write_text(YAML)
         (tmp_path / 'robot.xacro').write_text(f'{HEAD}{inside}</robot>')
-        python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
-        done = subprocess.run(
-            [
-                sys.executable,
-                ROOT / 'companions' / 'xacro' / request.param,
-                tmp_path / 'robot.xacro',
-                'side:=left',
-            ],
-            env={**os.environ, 'PYTHONPATH': python_path},
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        program = ROOT / 'companions' / 'xacro' / request.param
+        done = ran_by_python(program, tmp_path / 'robot.xacro', 'side:=left')
         return done.returncode, done.stdout, done.stderr
 
     return run

@@ -1,8 +1,6 @@
 """Importing the environments is cheap, and registers them."""
 
-import os
-import subprocess
-import sys
+from support.programs import python
 
 PROGRAM = """
 import sys
@@ -15,13 +13,7 @@ print(*(name for name in sys.modules if name.startswith(('pybullet', 'rosbots_de
 
 
 def test_import_registers_the_tasks_and_loads_neither_ros_nor_the_simulator():
-    ended = subprocess.run(
-        [sys.executable, '-c', PROGRAM],
-        capture_output=True,
-        text=True,
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-        check=False,
-    )
+    ended = python(PROGRAM)
     assert ended.stderr == ''
     assert ended.stdout.splitlines() == [
         'rosbots/FollowLine-v0 rosbots/GoToGoal-v0 rosbots/Maze-v0 rosbots/Wander-v0',

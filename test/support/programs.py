@@ -1,0 +1,42 @@
+"""Programs that tests run to their end."""
+
+import os
+import subprocess
+import sys
+
+from . import ROOT
+from .patience import PATIENCE
+
+
+def ran(*command, timeout=2 * PATIENCE, **options):
+    """Return a program that has ended, whatever its exit code, with what it has printed.
+
+    Args:
+        timeout: [s, wall] ends a hopeless wait.
+        options: of `subprocess.run`.
+    """
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=timeout, check=False, **options
+    )
+
+
+def ran_by_python(*arguments, **options):
+    """Run Python with arguments; it can import what this process can."""
+    environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
+    return ran(sys.executable, *arguments, env=environment, **options)
+
+
+def python(code, *arguments):
+    """Run Python code with arguments."""
+    return ran_by_python('-c', code, *arguments)
+
+
+def bash(script, *arguments, **environment):
+    """Run lines of bash, up to the first that fails, in an environment with our ROOT alone."""
+    environment = {'ROOT': str(ROOT), 'PATH': '/usr/bin:/bin', **environment}
+    return ran('bash', '-euc', script, 'bash', *arguments, env=environment)
+
+
+def in_setup(script, **environment):
+    """Run a script with the functions of the set-up."""
+    return bash(f'source "$ROOT/tools/setup.bash"; {script}', **environment)
