@@ -1,6 +1,8 @@
 """The messages of the stand-ins have the MD5 sums of the originals, which binaries and bags carry.
 
-The sum of an action covers those of its goal, result and feedback.
+A client and a server understand each other only if the sums are equal. The sum of an action covers
+those of its goal, result and feedback. Those of gazebo_msgs are of version 2.9.2. The definitions
+are read with genmsg: neither a build nor a master is needed.
 """
 
 import runpy
@@ -45,6 +47,42 @@ SUMS = {
         'ReloadControllerLibraries.srv': '40e8c411fd1797d2e2c486018f846040',
         'SwitchController.srv': 'b29a7abc673b2c54c14b54e50f8d06a5',
         'UnloadController.srv': '647e5c54b8d6468952d8d31f1efe96c0',
+    },
+    'gazebo_msgs': {
+        'ContactState.msg': '48c0ffb054b8c444f870cecea1ee50d9',
+        'ContactsState.msg': 'acbcb1601a8e525bf72509f18e6f668d',
+        'LinkState.msg': '0818ebbf28ce3a08d48ab1eaa7309ebe',
+        'LinkStates.msg': '48c080191eb15c41858319b4d8a609c2',
+        'ModelState.msg': '9330fd35f2fcd82d457e54bd54e10593',
+        'ModelStates.msg': '48c080191eb15c41858319b4d8a609c2',
+        'ODEJointProperties.msg': '1b744c32a920af979f53afe2f9c3511f',
+        'ODEPhysics.msg': '667d56ddbd547918c32d1934503dc335',
+        'PerformanceMetrics.msg': '884f71fd5037b886ec5e126b83c4425a',
+        'SensorPerformanceMetric.msg': '01762ded18cfe9ebc7c8222667c99547',
+        'WorldState.msg': 'de1a9de3ab7ba97ac0e9ec01a4eb481e',
+        'ApplyBodyWrench.srv': '585b9f9618aa0581b207e2f2d90866bc',
+        'ApplyJointEffort.srv': 'c0039811b8cc919490b3cff748cdf46b',
+        'BodyRequest.srv': '5eade9afe7f232d78005bd0cafeab755',
+        'DeleteLight.srv': 'ae11ea8100d536d5b92c2b5917abf912',
+        'DeleteModel.srv': '9ce56b4e9e54616de25d796dc972a262',
+        'GetJointProperties.srv': '7b30be900f50aa21efec4a0ec92d91c9',
+        'GetLightProperties.srv': 'df2cef87e13e2e6990e81e8aaa454c19',
+        'GetLinkProperties.srv': '0e06a70386d0ee3fb880c02f23fcd821',
+        'GetLinkState.srv': '09d6c98cce97b35f7ab9bd70300657ab',
+        'GetModelProperties.srv': '5717f7bd34ed990fa80e28b3015027a3',
+        'GetModelState.srv': '4c515e936d3319c9610c559c60bfc3d4',
+        'GetPhysicsProperties.srv': '575a5e74786981b7df2e3afc567693a6',
+        'GetWorldProperties.srv': '36bb0f2eccf4d8be971410c22818ba3f',
+        'JointRequest.srv': '0be1351618e1dc030eb7959d9a4902de',
+        'SetJointProperties.srv': '15a76e921b1410c698d82782ea5fa370',
+        'SetJointTrajectory.srv': '88f5c10979e3f9649d5ae87a3b12aa65',
+        'SetLightProperties.srv': 'e6f13430c57278bb364aca53a1bf5ebf',
+        'SetLinkProperties.srv': 'd534ce1b36ee99de0ffa806c3a6348f0',
+        'SetLinkState.srv': '8a5146eb66ae4d26b0860b08f3f271be',
+        'SetModelConfiguration.srv': '10e3139d3b669c40afc057d38956fff7',
+        'SetModelState.srv': '5b3ab0281d4f5445def017e3a2e4a07b',
+        'SetPhysicsProperties.srv': '97e2057080558ce4730434b5fae75c91',
+        'SpawnModel.srv': '9ed9c82c96abe1a00c3e8cdaeee24413',
     },
     'four_wheel_steering_msgs': {
         'FourWheelSteering.msg': '04dd0f55e1f168668af1e2587a7cdd2a',
