@@ -10,11 +10,12 @@ import signal
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .guarded import guarded
-from .program import INTERRUPTED
+from .program import INTERRUPTED, fail, say
 
 if TYPE_CHECKING:
     from ..batch import Progress, Result
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 PASSED, NOT_PASSED, USAGE = 0, 1, 2  # exit codes
 FOLDER = 'batch_output'
 REASONS = 5  # that are printed, the most frequent ones
+_say, _fail = partial(say, 'batch'), partial(fail, 'batch', code=USAGE)
 _done = mmap.mmap(-1, 8)  # rows so far, shared with the parent process
 
 
@@ -119,7 +121,7 @@ def _report(result: Result, output: Path) -> int:
     if others > 0:
         print(f'  and {others} other reason{"s" if others > 1 else ""}')
     if result.unwritten:
-        return _fail(f'{result.unwritten}; make room and repeat the command', NOT_PASSED)
+        return _fail(f'{result.unwritten}; make room and repeat the command', code=NOT_PASSED)
     print(f'rows: {output / "rows.parquet"}')
     return PASSED if outcomes['passed'] == result.table.num_rows else NOT_PASSED
 
@@ -149,15 +151,6 @@ def _bar() -> Iterator[Progress]:
         yield show
 
 
-def _fail(sentence: str, code: int = USAGE) -> int:
-    _say(sentence)
-    return code
-
-
-def _say(sentence: str) -> None:
-    sys.stderr.write(f'batch: {sentence}\n')
-
-
 def program() -> int:
     """Run `main` as a program of its own."""
     return guarded(_main_alone, _ended_by_ray)
@@ -178,7 +171,7 @@ def _ended_by_ray(interrupted: bool) -> int:
     return _fail(
         'ended by Ray, of which a process has died, or by a signal; the rows so far are '
         'kept, and the same command makes the others',
-        NOT_PASSED,
+        code=NOT_PASSED,
     )
 
 

@@ -9,6 +9,9 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
+from .gzserver import split_remappings
+from .program import fail
+
 DONE, FAILED = 0, 1  # exit codes
 _USAGE = """Commands:
     load <name>          - Load the controller named <name>
@@ -89,7 +92,7 @@ def group_parser() -> argparse.ArgumentParser:
 def spawner(arguments: Sequence[str] | None = None) -> int:
     """Load and start controllers, and take them down at the end; return the exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    options = spawner_parser().parse_args(_own(arguments))
+    options = spawner_parser().parse_args(split_remappings(arguments)[0])
     # Imported late: help and wrong usage are fast, and need no ROS.
     from ..ros_api.controller_programs import spawner as program
 
@@ -99,7 +102,7 @@ def spawner(arguments: Sequence[str] | None = None) -> int:
 def unspawner(arguments: Sequence[str] | None = None) -> int:
     """Keep controllers stopped until the end; return the exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    names = _own(arguments)
+    names = split_remappings(arguments)[0]
     if not names or names[0] in ('-h', '--help'):
         print(_UNSPAWNER_USAGE)
         return FAILED
@@ -111,7 +114,7 @@ def unspawner(arguments: Sequence[str] | None = None) -> int:
 def manager(arguments: Sequence[str] | None = None) -> int:
     """Make calls of a controller manager, and print what comes of them; return the exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    command, *names = _own(arguments) or ['']
+    command, *names = split_remappings(arguments)[0] or ['']
     command = _SHORT.get(command, command)
     if command not in (*_BY_NAME, 'list', 'list-types', 'reload-libraries'):
         print(_USAGE)
@@ -137,7 +140,7 @@ def manager(arguments: Sequence[str] | None = None) -> int:
 def group(arguments: Sequence[str] | None = None) -> int:
     """List, spawn or switch groups of controllers; return the exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    options = group_parser().parse_args(_own(arguments))
+    options = group_parser().parse_args(split_remappings(arguments)[0])
 
     def act() -> None:
         from ..ros_api.controller_programs import groups
@@ -163,10 +166,4 @@ def _reported(name: str, run: Callable[[], int]) -> int:
     try:
         return run()
     except AddressError as error:
-        print(f'{name}: {error}', file=sys.stderr)
-        return FAILED
-
-
-def _own(arguments: Sequence[str]) -> list[str]:
-    """Return the arguments that are not ROS remappings."""
-    return [text for text in arguments if ':=' not in text]
+        return fail(name, str(error))

@@ -26,7 +26,7 @@ from .demo_report import (
     table,
 )
 from .launched import Launched
-from .program import INTERRUPTED, run
+from .program import INTERRUPTED, fail, run
 
 if TYPE_CHECKING:
     from ..ros_api.clients.demo import DemoClient
@@ -74,8 +74,7 @@ def main(argv: list[str] | None = None) -> int:
         print('\ndemo: interrupted; all its processes have ended', file=sys.stderr)
         return INTERRUPTED
     except (DemoError, OSError) as error:
-        print(f'demo: {error}', file=sys.stderr)
-        return 1
+        return fail('demo', str(error))
     print(_DRIVE_IT_YOURSELF, end='')
     return 0
 

@@ -12,17 +12,10 @@ from collections.abc import Sequence
 
 from ..sim.core import SimError
 from .gzserver import split_remappings
-from .number_arguments import finite, without_exponents
+from .number_arguments import POSE, finite, without_exponents
+from .program import fail
 
-DONE, FAILED, USAGE = 0, 1, 2  # exit codes
-_POSE = (
-    ('x', 'position along x [m]'),
-    ('y', 'position along y [m]'),
-    ('z', 'position along z [m]'),
-    ('R', 'roll [rad]'),
-    ('P', 'pitch [rad]'),
-    ('Y', 'yaw [rad]'),
-)
+DONE = 0  # exit code
 _BY_ROSTOPIC = ('info', 'echo', 'hz', 'bw')  # options of `gz topic` that rostopic has as commands
 # Commands of Gazebo without a counterpart here.
 NOT_HERE = {
@@ -87,7 +80,7 @@ def _model(add: argparse.ArgumentParser) -> None:
     what.add_argument(
         '-p', '--pose', action='store_true', help='print its pose: x y z roll pitch yaw [m, rad]'
     )
-    for letter, text in _POSE:
+    for letter, text in POSE:
         add.add_argument(
             f'-{letter}',
             f'--pose-{letter}',
@@ -188,7 +181,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     own, remappings = split_remappings(sys.argv[1:] if arguments is None else arguments)
     command = next((word for word in own if word != 'help'), '')
     if command in NOT_HERE:
-        return _fail(command, f'this command of Gazebo is not supported; {NOT_HERE[command]}')
+        return fail(
+            f'gz {command}', f'this command of Gazebo is not supported; {NOT_HERE[command]}'
+        )
     options = parser()
     flags = options.parse_args(without_exponents(own))
     if flags.command == 'help':
@@ -222,8 +217,8 @@ def _describe(flags: argparse.Namespace) -> int:
     from ..ros_api.node import description_file  # loads all parsers
 
     if flags.check is None and flags.print is None:
-        return _fail(
-            'sdf',
+        return fail(
+            'gz sdf',
             'of the options only -k and -p are supported; SDF is specified at '
             'http://sdformat.org/spec',
         )
@@ -233,9 +228,9 @@ def _describe(flags: argparse.Namespace) -> int:
             return DONE
         faults = description_file.check_description(flags.check)
     except SimError as error:
-        return _fail('sdf', str(error))
+        return fail('gz sdf', str(error))
     if faults:  # each has been logged
-        return _fail('sdf', f'{flags.check} is read without {len(faults)} of its parts')
+        return fail('gz sdf', f'{flags.check} is read without {len(faults)} of its parts')
     sys.stdout.write('Check complete\n')
     return DONE
 
@@ -244,18 +239,17 @@ def _look_into_topic(flags: argparse.Namespace) -> int:
     """Let rostopic show a topic, for the duration that is given."""
     verb = next((name for name in _BY_ROSTOPIC if getattr(flags, name)), None)
     if verb is None:
-        return _fail('topic', 'no viewer is supported (-v); use rostopic echo, RViz or image_view')
+        return fail(
+            'gz topic', 'no viewer is supported (-v); use rostopic echo, RViz or image_view'
+        )
     program = shutil.which('rostopic')
     if program is None:
-        return _fail('topic', 'rostopic is not installed; on Debian: apt install python3-rostopic')
+        return fail(
+            'gz topic', 'rostopic is not installed; on Debian: apt install python3-rostopic'
+        )
     shown = subprocess.Popen([program, verb, getattr(flags, verb)])
     with contextlib.suppress(subprocess.TimeoutExpired):
         return shown.wait(flags.duration)
     shown.send_signal(signal.SIGINT)  # it then unregisters from the master
     shown.wait()
     return DONE
-
-
-def _fail(command: str, sentence: str) -> int:
-    sys.stderr.write(f'gz {command}: {sentence}\n')
-    return FAILED

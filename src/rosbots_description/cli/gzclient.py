@@ -13,9 +13,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from .gzserver import split_remappings
+from .program import fail, say
 
 # The window shows poses from the simulator, independent of /tf.
 _PR_SET_PDEATHSIG = 1  # of prctl(2)
@@ -25,6 +27,7 @@ PERIOD = 1.0  # time between polls of the simulator [s]
 STARTS = 4  # at most
 OPENS = 30.0  # time within which a crash counts as one of the start [s]
 CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGBUS}
+_say = partial(say, 'gzclient')
 OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 
 
@@ -86,8 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     rviz, config = shutil.which('rviz'), config_file()
     if rviz is None:
-        _say('no window: rviz is not installed; on Debian: apt install rviz')
-        return 1
+        return fail('gzclient', 'no window: rviz is not installed; on Debian: apt install rviz')
     command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_unique_name(remappings)]
     environment = rviz_environment(os.environ, config.with_name('gzclient_log.config'))
     return _run_window(command, environment)
@@ -182,7 +184,3 @@ def _reporter() -> Callable[[bool], None]:
             notice.show()
 
     return report
-
-
-def _say(sentence: str) -> None:
-    sys.stderr.write(f'gzclient: {sentence}\n')

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 
 from ..sim.core import SimError
+from .program import fail
 
 EMPTY_WORLD = 'worlds/empty.world'
 ENGINE = 'ode'
@@ -104,11 +105,11 @@ def _main(arguments: Sequence[str]) -> int:
     given, unknown = parser().parse_known_args(own)
     for module, package in _INSTALLED_BY.items():
         if not _is_installed(module):
-            sys.stderr.write(
-                f'gzserver: the Python module {module} is missing; install it for '
-                f'{sys.executable} with: pip install {package}\n'
+            return fail(
+                'gzserver',
+                f'the Python module {module} is missing; install it for {sys.executable} with: '
+                f'pip install {package}',
             )
-            return 1
     # Idle threads of numpy's library would spin.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     gc.disable()  # modules are never freed; collecting during imports costs time
@@ -128,8 +129,7 @@ def _main(arguments: Sequence[str]) -> int:
     try:
         return node.run(options, remappings)
     except SimError as error:
-        sys.stderr.write(f'gzserver: {error}\n')
-        return 1
+        return fail('gzserver', str(error))
 
 
 def _is_installed(module: str) -> bool:
@@ -153,14 +153,7 @@ def remarks(given: argparse.Namespace, unknown: Sequence[str]) -> tuple[tuple[in
                 'parameters of ode',
             )
         )
-    recording = (
-        given.record_encoding,
-        given.record_path,
-        given.record_period,
-        given.record_filter,
-        given.record_resources,
-    )
-    if given.record or any(recording):
+    if any(value for name, value in vars(given).items() if name.startswith('record')):
         found.append((logging.WARNING, 'recording (-r) is not supported; use rosbag'))
     if given.play:
         found.append((logging.WARNING, f'playing {given.play} (-p) is not supported; use rosbag'))

@@ -8,10 +8,12 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import nullcontext
+from functools import partial
 
 from .gzserver import split_remappings
 from .heap import use_one_heap
-from .page_token import add_options, announced, given_tokens
+from .page_token import add_options, announced, open_site
+from .program import fail, say
 from .web_browser import opened
 
 logger = logging.getLogger(__name__)
@@ -19,6 +21,7 @@ logger = logging.getLogger(__name__)
 PORT = 8080
 PERIOD = 0.5  # between looks at the simulator [s, wall]
 NAME = 'gzweb'
+_say, _fail = partial(say, NAME), partial(fail, NAME)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -63,23 +66,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         watch_master,
     )
     from ..ros_api.window import GazeboSimulator
-    from ..web import LOOPBACK, Page, Site, WindowError
+    from ..web import LOOPBACK, Page, WindowError
 
     try:
-        token, viewing_token = given_tokens(options)
-        site = Site(
-            options.host,
-            options.port,
-            token,
-            viewing_token=viewing_token,
-            is_open=options.no_token,
-            most_viewers=options.max_viewers,
-        )
+        site = open_site(options, options.no_token)
         start_node(NAME, remappings, wall_time=True)
     except (WindowError, AddressError) as error:
         return _fail(str(error))
-    except OSError as error:
-        return _fail(f"no token in '{error.filename}': {error.strerror or error}")
     connect_logging(time.time_ns)
     watch_master(Registrar(), ())
     if not site.token:
@@ -105,12 +98,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
             time.sleep(PERIOD)
     site.stop()
     return 0
-
-
-def _fail(sentence: str) -> int:
-    _say(sentence)
-    return 1
-
-
-def _say(sentence: str) -> None:
-    sys.stderr.write(f'{NAME}: {sentence}\n')

@@ -8,6 +8,14 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal
 
+POSE = (  # letters of options, and what they mean
+    ('x', 'position along x [m]'),
+    ('y', 'position along y [m]'),
+    ('z', 'position along z [m]'),
+    ('R', 'roll [rad]'),
+    ('P', 'pitch [rad]'),
+    ('Y', 'yaw [rad]'),
+)
 _NEGATIVE_WITH_EXPONENT = re.compile(r'-(\d+\.?\d*|\.\d+)[eE][-+]?\d+')
 
 

@@ -1,12 +1,19 @@
 """Tokens of pages: given by a file or the environment, and told to nobody else."""
 
+from __future__ import annotations
+
 import argparse
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING
 
+from .program import say
 from .web_browser import is_readable_by_others, private_page
+
+if TYPE_CHECKING:
+    from ..web import Site
 
 HOST = '127.0.0.1'
 VARIABLE, VIEWING_VARIABLE = 'GZWEB_TOKEN', 'GZWEB_VIEWING_TOKEN'
@@ -57,15 +64,27 @@ def _number_of_browsers(text: str) -> int:
     raise argparse.ArgumentTypeError(f"'{text}' is no number from 1 to {MANY_VIEWERS}")
 
 
-def given_tokens(options: argparse.Namespace) -> tuple[str, str]:
-    """Return the tokens for control and for looking; '' for those that are not given.
+def open_site(options: argparse.Namespace, is_open: bool = False) -> Site:
+    """Serve at the address that `options` give, by their tokens or, if `is_open`, without.
 
     Raises:
-        OSError: a file cannot be read, or others can read it; its `filename` says which.
+        WindowError: it cannot be served there, or a token cannot be used.
     """
-    return (
-        given_token(options.token_file, VARIABLE),
-        given_token(options.viewing_token_file, VIEWING_VARIABLE),
+    from ..web import Site, WindowError
+
+    try:
+        token = given_token(options.token_file, VARIABLE)
+        viewing = given_token(options.viewing_token_file, VIEWING_VARIABLE)
+    except OSError as error:
+        reason = error.strerror or error
+        raise WindowError(f"no token in '{error.filename}': {reason}") from None
+    return Site(
+        options.host,
+        options.port,
+        token,
+        viewing_token=viewing,
+        is_open=is_open,
+        most_viewers=options.max_viewers,
     )
 
 
@@ -81,10 +100,8 @@ def announced(program: str, address: str, viewing_address: str) -> Iterator[None
             place, _, token = one.partition('?')
             if token and is_readable_by_others(sys.stderr):
                 page = stack.enter_context(private_page(one))
-                sys.stderr.write(
-                    f'{program}: {what} {place}; {page} opens it, with the token, '
-                    'which others could read here\n'
-                )
+                hint = f'{page} opens it, with the token, which others could read here'
+                say(program, f'{what} {place}; {hint}')
             elif one:
-                sys.stderr.write(f'{program}: {what} {one}\n')
+                say(program, f'{what} {one}')
         yield

@@ -36,6 +36,17 @@ def run(main: Callable[[], int]) -> int:
         return INTERRUPTED
 
 
+def say(program: str, sentence: str) -> None:
+    """Print a sentence of a program on standard error."""
+    sys.stderr.write(f'{program}: {sentence}\n')
+
+
+def fail(program: str, sentence: str, code: int = 1) -> int:
+    """Print why a program fails; return its exit code."""
+    say(program, sentence)
+    return code
+
+
 def _use_utf8() -> None:
     """Restart in Python's UTF-8 mode if the locale has another encoding.
 

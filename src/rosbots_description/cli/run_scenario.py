@@ -12,9 +12,10 @@ import unittest
 from collections.abc import Sequence
 
 from .gzserver import split_remappings
+from .program import fail
 
 NAME = 'run_scenario'
-FAILED, USAGE = 1, 2  # exit codes
+USAGE = 2  # exit code
 
 
 def parser() -> argparse.ArgumentParser:
@@ -64,11 +65,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     try:
         file = ScenarioFile.read(options.scenario)
-        if not 0 <= options.run < file.parameters.runs:
-            return _fail(f'there is no run {options.run}; it has {file.parameters.runs}, from 0')
+        if not 0 <= options.run < (runs := file.parameters.runs):
+            return fail(NAME, f'there is no run {options.run}; it has {runs}, from 0', USAGE)
         start_node(NAME, remappings)
     except (SimError, AddressError) as error:
-        return _fail(str(error))
+        return fail(NAME, str(error), USAGE)
     if test_flags:
         # By its name in a string: the tests have a folder of that name.
         importlib.import_module('rostest').rosrun(
@@ -76,9 +77,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
         return 0
     sentence = fault()
-    return _fail(sentence, FAILED) if sentence else 0
-
-
-def _fail(sentence: str, code: int = USAGE) -> int:
-    sys.stderr.write(f'{NAME}: {sentence}\n')
-    return code
+    return fail(NAME, sentence) if sentence else 0

@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from .number_arguments import finite, without_exponents
+from .number_arguments import POSE, finite, without_exponents
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -47,14 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument('-unpause', action='store_true', help='let physics run afterwards')
     parser.add_argument('-wait', metavar='NAME', help='first wait until this model is there')
-    for flag, meaning in (
-        ('x', 'position along x [m]'),
-        ('y', 'position along y [m]'),
-        ('z', 'position along z [m]'),
-        ('R', 'roll [rad]'),
-        ('P', 'pitch [rad]'),
-        ('Y', 'yaw [rad]'),
-    ):
+    for flag, meaning in POSE:
         parser.add_argument(
             f'-{flag}', metavar='NUMBER', type=finite, default=0.0, help=f'{meaning}; default: 0'
         )

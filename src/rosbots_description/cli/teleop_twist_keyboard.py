@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .key_terminal import read_key, single_keys
+from .program import fail
 from .teleop_keys import BANNER, QUIT, Driver, Speeds
 
 if TYPE_CHECKING:
@@ -69,8 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 0
     except ValueError as error:
-        print(f'teleop_twist_keyboard: {error}', file=sys.stderr)
-        return 1
+        return fail('teleop_twist_keyboard', str(error))
     publisher = VelocityPublisher(settings.stamped, settings.frame_id, settings.repeat_rate)
     try:
         if _wait_for_subscriber(publisher, is_running):

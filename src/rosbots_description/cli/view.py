@@ -7,16 +7,18 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from typing import TYPE_CHECKING, NoReturn
 
-from .page_token import add_options, announced, given_tokens
-from .program import run
+from .page_token import add_options, announced, open_site
+from .program import fail, run, say
 from .web_browser import opened
 
 if TYPE_CHECKING:
     from ..sim.core import Fault
 
 NAME = 'rosbots-view'
+_say, _fail = partial(say, NAME), partial(fail, NAME)
 MOST_FAULTS = 20  # that are printed
 ARGUMENT = re.compile(r'(\w+):=(.*)', re.DOTALL)
 
@@ -64,22 +66,13 @@ def _serve(options: argparse.Namespace, values: dict[str, str]) -> int:
     """Serve the page of the file that `options` name; return the exit code."""
     from ..sim.core import SimError
     from ..viewer import Viewer, open_file, open_sandbox
-    from ..web import LOOPBACK, Site, WindowError
+    from ..web import LOOPBACK, WindowError
 
     with open_sandbox() as sandbox:
         try:
-            token, viewing_token = given_tokens(options)
-            site = Site(
-                options.host,
-                options.port,
-                token,
-                viewing_token=viewing_token,
-                most_viewers=options.max_viewers,
-            )
+            site = open_site(options)
         except WindowError as error:
             return _fail(str(error))
-        except OSError as error:
-            return _fail(f"no token in '{error.filename}': {error.strerror or error}")
         try:
             world = open_file(options.file, values, sandbox)
         except (SimError, OSError) as error:
@@ -125,15 +118,6 @@ def _until_terminated() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def _fail(sentence: str) -> int:
-    _say(sentence)
-    return 1
-
-
-def _say(sentence: str) -> None:
-    sys.stderr.write(f'{NAME}: {sentence}\n')
 
 
 if __name__ == '__main__':

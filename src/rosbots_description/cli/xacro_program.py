@@ -18,6 +18,7 @@ from xml.dom.minidom import Element
 import yaml
 
 from ..sim.xacro_module import import_xacro
+from .program import fail
 
 _PYTHON = {'bool': bool, 'len': len, 'range': range, 'sorted': sorted}
 # in rad and m
@@ -38,11 +39,11 @@ def main() -> int:
     try:
         xacro = import_xacro()  # after the path is cleaned
     except ImportError:
-        sys.stderr.write(
-            f'xacro: the Python module xacro is missing for {sys.executable}; install '
-            'it with "python3 -m pip install xacro==1.13.3".\n'
+        return fail(
+            'xacro',
+            f'the Python module xacro is missing for {sys.executable}; install '
+            'it with "python3 -m pip install xacro==1.13.3".',
         )
-        return 1
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(encoding='utf-8')  # the encoding of XML, despite PYTHONIOENCODING
     extend(xacro)
