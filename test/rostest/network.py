@@ -1,4 +1,4 @@
-"""Names, types and MD5 sums of services and topics, as in gazebo_ros 2.9.2."""
+"""Names and types of services and topics, as in gazebo_ros 2.9.2."""
 
 import rosgraph
 import rospy
@@ -6,51 +6,39 @@ import rosservice
 from dynamic_reconfigure.msg import Config, ConfigDescription
 from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
 from rosgraph_msgs.msg import Clock
+from roslib.message import get_service_class
 
-EMPTY = ('std_srvs/Empty', 'd41d8cd98f00b204e9800998ecf8427e')
-BODY = ('gazebo_msgs/BodyRequest', '5eade9afe7f232d78005bd0cafeab755')
-JOINT = ('gazebo_msgs/JointRequest', '0be1351618e1dc030eb7959d9a4902de')
-SPAWN = ('gazebo_msgs/SpawnModel', '9ed9c82c96abe1a00c3e8cdaeee24413')
 SERVICES = {
-    'apply_body_wrench': ('gazebo_msgs/ApplyBodyWrench', '585b9f9618aa0581b207e2f2d90866bc'),
-    'apply_joint_effort': ('gazebo_msgs/ApplyJointEffort', 'c0039811b8cc919490b3cff748cdf46b'),
-    'clear_body_wrenches': BODY,
-    'clear_joint_forces': JOINT,
-    'delete_light': ('gazebo_msgs/DeleteLight', 'ae11ea8100d536d5b92c2b5917abf912'),
-    'delete_model': ('gazebo_msgs/DeleteModel', '9ce56b4e9e54616de25d796dc972a262'),
-    'get_joint_properties': ('gazebo_msgs/GetJointProperties', '7b30be900f50aa21efec4a0ec92d91c9'),
-    'get_light_properties': ('gazebo_msgs/GetLightProperties', 'df2cef87e13e2e6990e81e8aaa454c19'),
-    'get_link_properties': ('gazebo_msgs/GetLinkProperties', '0e06a70386d0ee3fb880c02f23fcd821'),
-    'get_link_state': ('gazebo_msgs/GetLinkState', '09d6c98cce97b35f7ab9bd70300657ab'),
-    'get_loggers': ('roscpp/GetLoggers', '32e97e85527d4678a8f9279894bb64b0'),
-    'get_model_properties': ('gazebo_msgs/GetModelProperties', '5717f7bd34ed990fa80e28b3015027a3'),
-    'get_model_state': ('gazebo_msgs/GetModelState', '4c515e936d3319c9610c559c60bfc3d4'),
-    'get_physics_properties': (
-        'gazebo_msgs/GetPhysicsProperties',
-        '575a5e74786981b7df2e3afc567693a6',
-    ),
-    'get_world_properties': ('gazebo_msgs/GetWorldProperties', '36bb0f2eccf4d8be971410c22818ba3f'),
-    'pause_physics': EMPTY,
-    'reset_simulation': EMPTY,
-    'reset_world': EMPTY,
-    'set_joint_properties': ('gazebo_msgs/SetJointProperties', '15a76e921b1410c698d82782ea5fa370'),
-    'set_light_properties': ('gazebo_msgs/SetLightProperties', 'e6f13430c57278bb364aca53a1bf5ebf'),
-    'set_link_properties': ('gazebo_msgs/SetLinkProperties', 'd534ce1b36ee99de0ffa806c3a6348f0'),
-    'set_link_state': ('gazebo_msgs/SetLinkState', '8a5146eb66ae4d26b0860b08f3f271be'),
-    'set_logger_level': ('roscpp/SetLoggerLevel', '51da076440d78ca1684d36c868df61ea'),
-    'set_model_configuration': (
-        'gazebo_msgs/SetModelConfiguration',
-        '10e3139d3b669c40afc057d38956fff7',
-    ),
-    'set_model_state': ('gazebo_msgs/SetModelState', '5b3ab0281d4f5445def017e3a2e4a07b'),
-    'set_parameters': ('dynamic_reconfigure/Reconfigure', 'bb125d226a21982a4a98760418dc2672'),
-    'set_physics_properties': (
-        'gazebo_msgs/SetPhysicsProperties',
-        '97e2057080558ce4730434b5fae75c91',
-    ),
-    'spawn_sdf_model': SPAWN,
-    'spawn_urdf_model': SPAWN,
-    'unpause_physics': EMPTY,
+    'apply_body_wrench': 'gazebo_msgs/ApplyBodyWrench',
+    'apply_joint_effort': 'gazebo_msgs/ApplyJointEffort',
+    'clear_body_wrenches': 'gazebo_msgs/BodyRequest',
+    'clear_joint_forces': 'gazebo_msgs/JointRequest',
+    'delete_light': 'gazebo_msgs/DeleteLight',
+    'delete_model': 'gazebo_msgs/DeleteModel',
+    'get_joint_properties': 'gazebo_msgs/GetJointProperties',
+    'get_light_properties': 'gazebo_msgs/GetLightProperties',
+    'get_link_properties': 'gazebo_msgs/GetLinkProperties',
+    'get_link_state': 'gazebo_msgs/GetLinkState',
+    'get_loggers': 'roscpp/GetLoggers',
+    'get_model_properties': 'gazebo_msgs/GetModelProperties',
+    'get_model_state': 'gazebo_msgs/GetModelState',
+    'get_physics_properties': 'gazebo_msgs/GetPhysicsProperties',
+    'get_world_properties': 'gazebo_msgs/GetWorldProperties',
+    'pause_physics': 'std_srvs/Empty',
+    'reset_simulation': 'std_srvs/Empty',
+    'reset_world': 'std_srvs/Empty',
+    'set_joint_properties': 'gazebo_msgs/SetJointProperties',
+    'set_light_properties': 'gazebo_msgs/SetLightProperties',
+    'set_link_properties': 'gazebo_msgs/SetLinkProperties',
+    'set_link_state': 'gazebo_msgs/SetLinkState',
+    'set_logger_level': 'roscpp/SetLoggerLevel',
+    'set_model_configuration': 'gazebo_msgs/SetModelConfiguration',
+    'set_model_state': 'gazebo_msgs/SetModelState',
+    'set_parameters': 'dynamic_reconfigure/Reconfigure',
+    'set_physics_properties': 'gazebo_msgs/SetPhysicsProperties',
+    'spawn_sdf_model': 'gazebo_msgs/SpawnModel',
+    'spawn_urdf_model': 'gazebo_msgs/SpawnModel',
+    'unpause_physics': 'std_srvs/Empty',
 }
 PUBLISHED = {
     '/clock': Clock,
@@ -84,22 +72,23 @@ OUR_SERVICES = {
 }
 # What the article's robot adds when it is spawned.
 OF_ROBOT = {'/odom', '/joint_states', '/tf', '/part2_cmr/cmd_vel'}
+# name: type, default, least, most (gazebo_ros/cfg/Physics.cfg), in the order of the description
 PARAMETERS = {
-    'auto_disable_bodies',
-    'cfm',
-    'contact_max_correcting_vel',
-    'contact_surface_layer',
-    'erp',
-    'gravity_x',
-    'gravity_y',
-    'gravity_z',
-    'max_contacts',
-    'max_update_rate',
-    'sor_pgs_iters',
-    'sor_pgs_precon_iters',
-    'sor_pgs_rms_error_tol',
-    'sor_pgs_w',
-    'time_step',
+    'time_step': ('double', 0.001, 0.0, 10.0),
+    'max_update_rate': ('double', 60.0, 0.0, 1000.0),
+    'gravity_x': ('double', 0.0, -100.0, 100.0),
+    'gravity_y': ('double', 0.0, -100.0, 100.0),
+    'gravity_z': ('double', -9.8, -100.0, 100.0),
+    'auto_disable_bodies': ('bool', False, False, True),
+    'sor_pgs_precon_iters': ('int', 0, 0, 10000),
+    'sor_pgs_iters': ('int', 20, 0, 10000),
+    'sor_pgs_w': ('double', 1.3, 0.0, 5.0),
+    'sor_pgs_rms_error_tol': ('double', -1.0, -1.0, 10000.0),
+    'cfm': ('double', 0.0, 0.0, 10.0),
+    'erp': ('double', 0.2, 0.0, 10.0),
+    'contact_surface_layer': ('double', 0.001, 0.0, 10.0),
+    'contact_max_correcting_vel': ('double', 100.0, 0.0, 1e7),
+    'max_contacts': ('int', 100, 0, 10000000),
 }
 
 
@@ -109,9 +98,14 @@ def services_of(node='/gazebo'):
     return {name.removeprefix(f'{node}/') for name, nodes in services if node in nodes}
 
 
-def type_and_sum(service):
-    """Return the type and the MD5 sum of a service of the running server."""
+def type_of(service):
+    """Return the type of a service of the running server, with the MD5 sum that clients know.
+
+    Those of gazebo_msgs are Gazebo's: see test/unit/test_companion_messages.py.
+    """
     name = f'/gazebo/{service}'
     uri = rosgraph.Master(rospy.get_name()).lookupService(name)
     header = rosservice.get_service_headers(name, uri)
-    return header['type'], header['md5sum']
+    known = get_service_class(header['type'])._md5sum
+    assert header['md5sum'] == known, f'{name} has the MD5 sum {header["md5sum"]}, not {known}'
+    return header['type']

@@ -13,7 +13,7 @@ from network import (
     SERVICES,
     SUBSCRIBED,
     services_of,
-    type_and_sum,
+    type_of,
 )
 from simulator import SENSOR_BOX, SimulatorTest, spawn_model, topics_of, wait_until
 
@@ -34,15 +34,14 @@ class WithoutExtensionsTest(SimulatorTest):
     def test_an_empty_world_and_the_robot_in_it(self):
         wait_until(lambda: 'set_parameters' in services_of(), 'dynamic_reconfigure')
         self.assertEqual(topics_of(), OF_GAZEBO)
-        self.assertEqual(services_of(), set(SERVICES))
+        self.assertEqual({name: type_of(name) for name in services_of()}, SERVICES)
         self.assertEqual(len(SERVICES), 30)
-        self.assertEqual({name: type_and_sum(name) for name in services_of()}, SERVICES)
         types = dict(rospy.get_master().getTopicTypes()[2])
         for name, message_class in {**PUBLISHED, **SUBSCRIBED}.items():
             self.assertEqual(types[name], message_class._type)
         self.assertEqual(nodes() - {rospy.get_name(), '/rosout'}, {'/gazebo'})
         parameters = set(rospy.get_param('/gazebo')) - {'extensions'}
-        self.assertEqual(parameters, PARAMETERS | {'enable_ros_network'})
+        self.assertEqual(parameters, {*PARAMETERS, 'enable_ros_network'})
         self.assertIs(rospy.get_param('/use_sim_time'), True)
         self.spawn()
         self.assertEqual(topics_of(), OF_GAZEBO | OF_ROBOT)
