@@ -39,18 +39,17 @@ def is_ready(node='/rviz'):
     )
 
 
-def start(open_terminal, close, limit):
+def start(open_terminal, limit):
     """Return the terminal of a launch file, once its RViz is ready.
 
     Args:
         open_terminal: launches the file and returns the terminal.
-        close: ends the program in a terminal.
-        limit: timeout of start and end [s, wall].
+        limit: timeout of the start [s, wall].
     """
     for _ in range(STARTS):
         terminal = open_terminal()
         wait_until(lambda: is_ready() or CRASH.search(terminal.shown()), 'RViz', limit)  # noqa: B023
         if not CRASH.search(terminal.shown()):
             return terminal
-        close(terminal)
+        terminal.end()
     raise AssertionError(terminal.shown())

@@ -3,7 +3,6 @@
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +11,7 @@ import rosgraph
 from gazebo_msgs.srv import GetWorldProperties
 from programs import end, find_program, keep
 from raw_client import answer, request_bytes, service_connection
-from simulator import DEADLINE, SimulatorTest, wait_until
+from simulator import DEADLINE, SimulatorTest, free_port, wait_until
 
 
 class ServerProcess:
@@ -79,6 +78,14 @@ class ServerProcess:
     def world(self):
         return self.call('get_world_properties', GetWorldProperties)
 
+    def spawn(self, name, xml):
+        """Spawn a model by spawn_model with this server's master."""
+        with ServerProcess(
+            '-urdf', '-stdin', '-model', name, program='spawn_model', master=self.master
+        ) as client:
+            printed, _ = client.process.communicate(xml, timeout=2 * DEADLINE)
+        assert client.process.returncode == 0, printed
+
     def open_files(self):
         """Return the number of open file descriptors, connections included."""
         return len(os.listdir(f'/proc/{self.process.pid}/fd'))
@@ -105,9 +112,9 @@ class ServerProcess:
             for pid in Path(f'/proc/{child}/task/{child}/children').read_text().split()
         ]
 
-    def end(self):
-        """End it by SIGINT; return its exit code and output."""
-        self.process.send_signal(signal.SIGINT)
+    def end(self, number=signal.SIGINT):
+        """End it by a signal; return its exit code and output."""
+        self.process.send_signal(number)
         return self.wait()
 
     def wait(self):
@@ -118,17 +125,19 @@ class ServerProcess:
 
 
 class MasterProcess:
-    """A ROS master on a free port; a `with` statement gets its URI."""
+    """A ROS master on a free port; a `with` statement starts it, and gets its URI."""
+
+    def __init__(self):
+        self._port, self._process = free_port(), None
+        self.address = f'http://localhost:{self._port}'
 
     def __enter__(self):
-        with socket.socket() as probe:
-            probe.bind(('localhost', 0))
-            self._port = probe.getsockname()[1]
         return self.start()
 
     def __exit__(self, *_):
-        self._process.terminate()
-        self._process.wait()
+        if self._process is not None:
+            self._process.terminate()
+            self._process.wait()
 
     def start(self):
         """Start or restart it; return its URI."""
@@ -138,9 +147,8 @@ class MasterProcess:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        address = f'http://localhost:{self._port}'
-        wait_until(rosgraph.Master('/test', address).is_online, 'the second master')
-        return address
+        wait_until(rosgraph.Master('/test', self.address).is_online, 'the ROS master')
+        return self.address
 
     @contextlib.contextmanager
     def silenced(self):

@@ -1,6 +1,7 @@
 """Shared code of tests of the running simulator: services, and waiting for conditions."""
 
 import contextlib
+import re
 import socket
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from gazebo_msgs.srv import (
     GetWorldProperties,
     SpawnModel,
 )
-from geometry_msgs.msg import Point, Pose, Quaternion, Twist
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from programs import find_program
 from std_srvs.srv import Empty
 
@@ -31,15 +32,16 @@ BOX = """<robot name="box"><link name="body">
 
 
 def wait_until(condition, what, deadline=DEADLINE):
-    """Wait for a condition with a timeout of wall time; simulated time may be paused.
+    """Return what a condition returns, when it is true; with a timeout of wall time.
 
-    A look at it leaves the processor to what is waited for: the longer one takes, the fewer.
+    Simulated time may be paused. A look at it leaves the processor to what is waited for: the
+    longer one takes, the fewer.
     """
     end = time.monotonic() + deadline
     while True:
         began = time.monotonic()
-        if condition():
-            return
+        if value := condition():
+            return value
         now = time.monotonic()
         if now > end:
             raise AssertionError(f'not within {deadline:g} s: {what}')
@@ -53,9 +55,21 @@ def free_port():
         return probe.getsockname()[1]
 
 
-def proxy(name, service_type):
-    rospy.wait_for_service(f'/gazebo/{name}', DEADLINE)
-    return rospy.ServiceProxy(f'/gazebo/{name}', service_type)
+def proxy(name, service_type, node='/gazebo'):
+    """Return a service of the simulator, when it is offered."""
+    rospy.wait_for_service(f'{node}/{name}', DEADLINE)
+    return rospy.ServiceProxy(f'{node}/{name}', service_type)
+
+
+def process_of(node='/gazebo'):
+    """Return the process id of a node."""
+    return ServerProxy(rosgraph.Master('/test').lookupNode(node)).getPid('/test')[2]
+
+
+def page_address(shown, deadline=DEADLINE):
+    """Return the address of the window in the browser; `shown` returns what it has printed."""
+    said = re.compile(r'the world is at (\S+)\s')
+    return wait_until(lambda: said.search(shown()), 'the address', deadline)[1]
 
 
 def hears(subscriber, node='/gazebo'):
@@ -171,15 +185,25 @@ class SimulatorTest(unittest.TestCase):
         while self._connections:
             self._connections.pop().unregister()
 
-    def driver(self):
-        """Return a function that sends a velocity command to the robot."""
-        publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
-        self._connections.append(publisher)
-        wait_until(publisher.get_num_connections, f'a subscriber of {COMMANDS}')
+    def read(self, topic, message_class, count):
+        """Return such a list when it has so many messages."""
+        messages = self.collect(topic, message_class)
+        wait_until(lambda: len(messages) >= count, f'messages on {topic}')
+        return messages
 
-        def drive(forward, turn=0.0):
-            command = Twist()
-            command.linear.x, command.angular.z = forward, turn
+    def publisher(self, topic, message_class):
+        """Return a publisher that somebody reads."""
+        made = rospy.Publisher(topic, message_class, queue_size=10)
+        self._connections.append(made)
+        wait_until(made.get_num_connections, f'a subscriber of {topic}')
+        return made
+
+    def driver(self, topic=COMMANDS):
+        """Return a function that sends a velocity command to the robot."""
+        publisher = self.publisher(topic, Twist)
+
+        def drive(forward=0.0, turn=0.0, left=0.0):
+            command = Twist(Vector3(forward, left, 0.0), Vector3(0.0, 0.0, turn))
             publisher.publish(command)
 
         return drive

@@ -3,12 +3,15 @@
 import os
 import pty
 import select
+import signal
 import subprocess
 import termios
 import threading
 from pathlib import Path
 
 from programs import end, keep
+
+LIMIT = 180.0  # [s, wall] of a program's end; only ends a hopeless wait
 
 
 class Terminal:
@@ -54,6 +57,12 @@ class Terminal:
     def mode(self):
         """Return the terminal's settings."""
         return termios.tcgetattr(self._screen)
+
+    def end(self, number=signal.SIGINT, limit=LIMIT):
+        """Press Ctrl-C, or send another signal; return the exit code."""
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, number)
+        return self.process.wait(limit)
 
     def close(self):
         end(self.process)

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """The simulator survives the end of the ROS master, and registers with the next one."""
 
-import re
 import subprocess
 import sys
 import unittest
@@ -23,7 +22,7 @@ from gazebo_msgs.srv import (
 )
 from raw_client import answer, request_bytes, service_connection
 from server_process import MasterProcess, ServerProcess
-from simulator import BOX, DEADLINE, LAST_TOPICS, pose, wait_until
+from simulator import BOX, DEADLINE, LAST_TOPICS, page_address, pose, wait_until
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 from support.browser import Browser
@@ -40,15 +39,8 @@ class MasterRestartTest(unittest.TestCase):
         self.addCleanup(self.server.__exit__)
         self.graph = rosgraph.Master('/test', address)
         self.server.wait_ready()
-        self._spawn('rosbots', rospy.get_param('robot_description'))
+        self.server.spawn('rosbots', rospy.get_param('robot_description'))
         wait_until(lambda: self._of_server()[0] >= LAST_TOPICS, 'dynamic_reconfigure')
-
-    def _spawn(self, name, xml):
-        with ServerProcess(
-            '-urdf', '-stdin', '-model', name, program='spawn_model', master=self.server.master
-        ) as client:
-            printed, _ = client.process.communicate(xml, timeout=2 * DEADLINE)
-            self.assertEqual(client.process.returncode, 0, printed)
 
     def _run(self, *command):
         """Run a ROS program with the server's master; return what it prints."""
@@ -99,8 +91,7 @@ class MasterRestartTest(unittest.TestCase):
         """Open the window in the browser, and look; return the browser."""
         window = ServerProcess('--port', '0', program='gzweb', master=self.server.master)
         self.addCleanup(window.__exit__)
-        address = re.search(r'gzweb: the world is at (\S+)', window.process.stdout.readline())[1]
-        browser = Browser(address)
+        browser = Browser(page_address(window.process.stdout.readline))
         self.addCleanup(browser.__exit__)
         wait_until(self._is_shown, 'the window to look')
         return browser
@@ -176,7 +167,7 @@ class MasterRestartTest(unittest.TestCase):
             finally:
                 driving.terminate()
         self.assertIn('odom', self._run('rostopic', 'echo', '-n1', '/odom'))
-        self._spawn('box', BOX)
+        self.server.spawn('box', BOX)
         code, printed = self.server.end()
         self.assertEqual(code, 0)
         self.assertNotIn('Traceback', printed)

@@ -12,7 +12,7 @@ import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from server_process import MasterProcess, ServerProcess
-from simulator import BOX, DEADLINE, pose, wait_until
+from simulator import BOX, pose, proxy, wait_until
 from std_srvs.srv import Empty
 
 GROUND = ['ground_plane']
@@ -20,17 +20,12 @@ EIGHT = 8
 SHAPES = ['ground_plane', 'box', 'sphere', 'cylinder']
 
 
-def service(server, name, service_type):
-    rospy.wait_for_service(f'/{server.name}/{name}', DEADLINE)
-    return rospy.ServiceProxy(f'/{server.name}/{name}', service_type)
-
-
 def models(server):
-    return service(server, 'get_world_properties', GetWorldProperties)().model_names
+    return proxy('get_world_properties', GetWorldProperties, f'/{server.name}')().model_names
 
 
 def time_of(server):
-    return service(server, 'get_world_properties', GetWorldProperties)().sim_time
+    return proxy('get_world_properties', GetWorldProperties, f'/{server.name}')().sim_time
 
 
 def is_running(pid):
@@ -50,9 +45,9 @@ class NeighboursTest(unittest.TestCase):
             one.wait_ready()
             two.wait_ready()
             self.assertEqual((models(one), models(two)), (GROUND, SHAPES))
-            spawn = service(one, 'spawn_urdf_model', SpawnModel)
+            spawn = proxy('spawn_urdf_model', SpawnModel, '/one')
             self.assertTrue(spawn('crate', BOX, '/', pose(), '').success)
-            service(one, 'pause_physics', Empty)()
+            proxy('pause_physics', Empty, '/one')()
             self.assertEqual((models(one), models(two)), ([*GROUND, 'crate'], SHAPES))
             stopped, running = time_of(one), time_of(two)
             wait_until(lambda: time_of(two) > running + 0.1, 'advance of the other server')
@@ -73,14 +68,10 @@ class NeighboursTest(unittest.TestCase):
         ):
             here.wait_ready()
             there.wait_ready()
-            spawn = service(here, 'spawn_urdf_model', SpawnModel)
+            spawn = proxy('spawn_urdf_model', SpawnModel)
             self.assertTrue(spawn('rosbots', xml, '/', pose(), '').success)
             self.assertEqual(there.world().model_names, GROUND)
-            with ServerProcess(
-                '-urdf', '-stdin', '-model', 'rosbots', program='spawn_model', master=address
-            ) as client:
-                printed, _ = client.process.communicate(xml, timeout=DEADLINE)
-            self.assertEqual(client.process.returncode, 0, printed)
+            there.spawn('rosbots', xml)
             self.assertEqual(here.end()[0], 0)
             # meshes are read from files again
             there.call('reset_simulation', Empty)
@@ -108,16 +99,7 @@ class NeighboursTest(unittest.TestCase):
             for server in servers:
                 server.wait_ready()
             for number, server in enumerate(servers):
-                with ServerProcess(
-                    '-urdf',
-                    '-stdin',
-                    '-model',
-                    f'robot_{number}',
-                    program='spawn_model',
-                    master=server.master,
-                ) as client:
-                    printed, _ = client.process.communicate(xml, timeout=DEADLINE)
-                self.assertEqual(client.process.returncode, 0, printed)
+                server.spawn(f'robot_{number}', xml)
             killed, *others = servers
             families = [int(pid) for pid in killed.children()]
             self.assertGreater(len(families), 0)
