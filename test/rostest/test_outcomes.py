@@ -34,225 +34,168 @@ LIGHT = """<sdf version="1.6"><light type="point" name="other"><diffuse>1 0.5 0 
 </sdf>"""
 PICTURE = 60.0  # [s, wall] timeout of an image
 SPAWNED = 'SpawnModel: Successfully spawned entity'
-NO_LINK = '{}: link not found, did you forget to scope the link by model name?'
+NO_LINK = 'link not found, did you forget to scope the link by model name?'
+NO_MODEL = 'model does not exist'
+EXISTS = 'Failure - entity already exists.'
+NO_FRAME = 'reference {} not found, did you forget to scope the {} by model name?'
 NAN = 'nan; it must be a finite number'
-# service, request, success, text; with the models `arm` and `box`, paused.
-OUTCOMES = [
+# Of refusals: service, request, text behind the name of its type; with the models `arm` and `box`,
+# paused.
+REFUSALS = [
+    ('get_model_properties', {'model_name': 'nope'}, NO_MODEL),
+    ('get_model_state', {'model_name': 'nope'}, NO_MODEL),
     (
-        'get_model_properties',
-        {'model_name': 'nope'},
-        False,
-        'GetModelProperties: model does not exist',
+        'get_model_state',
+        {'model_name': 'box', 'relative_entity_name': 'nope'},
+        NO_FRAME.format('relative_entity_name', 'body'),
     ),
-    ('get_model_properties', {'model_name': 'arm'}, True, 'GetModelProperties: got properties'),
-    ('get_joint_properties', {'joint_name': 'nope'}, False, 'GetJointProperties: joint not found'),
-    (
-        'get_joint_properties',
-        {'joint_name': 'arm::hinge'},
-        True,
-        'GetJointProperties: got properties',
-    ),
-    ('get_joint_properties', {'joint_name': 'weld'}, True, 'GetJointProperties: got properties'),
-    ('get_link_properties', {'link_name': 'arm'}, False, NO_LINK.format('GetLinkProperties')),
-    ('get_link_properties', {'link_name': 'arm::rod'}, True, 'GetLinkProperties: got properties'),
-    ('get_link_state', {'link_name': 'nope'}, False, NO_LINK.format('GetLinkState')),
+    ('get_joint_properties', {'joint_name': 'nope'}, 'joint not found'),
+    ('get_link_properties', {'link_name': 'arm'}, NO_LINK),
+    ('get_link_state', {'link_name': 'nope'}, NO_LINK),
     (
         'get_link_state',
         {'link_name': 'rod', 'reference_frame': 'nope'},
-        False,
-        'GetLinkState: reference reference_frame not found, '
-        'did you forget to scope the link by model name?',
+        NO_FRAME.format('reference_frame', 'link'),
     ),
-    (
-        'get_link_state',
-        {'link_name': 'rod', 'reference_frame': 'map'},
-        True,
-        'GetLinkState: got state',
-    ),
-    (
-        'set_model_state',
-        {'model_state': {'model_name': 'nope'}},
-        False,
-        'SetModelState: model does not exist',
-    ),
-    (
-        'set_model_state',
-        {'model_state': {'model_name': 'arm::rod'}},
-        False,
-        'SetModelState: model does not exist',
-    ),
+    ('set_model_state', {'model_state': {'model_name': 'nope'}}, NO_MODEL),
+    ('set_model_state', {'model_state': {'model_name': 'arm::rod'}}, NO_MODEL),
     (
         'set_model_state',
         {'model_state': {'model_name': 'box', 'reference_frame': 'odom'}},
-        False,
-        'SetModelState: specified reference frame entity does not exist',
+        'specified reference frame entity does not exist',
     ),
     (
         'set_model_state',
         {'model_state': {'model_name': 'box', 'pose': {'position': {'x': math.nan}}}},
-        False,
-        f'SetModelState: Failure - model_state.pose.position.x is {NAN}',
+        f'Failure - model_state.pose.position.x is {NAN}',
     ),
-    (
-        'set_model_state',
-        {'model_state': {'model_name': 'box', 'reference_frame': 'world'}},
-        True,
-        'SetModelState: set model state done',
-    ),
-    (
-        'set_link_state',
-        {'link_state': {'link_name': 'nope'}},
-        False,
-        'SetLinkState: link does not exist',
-    ),
-    (
-        'set_link_state',
-        {'link_state': {'link_name': 'rod', 'reference_frame': 'box'}},
-        False,
-        'SetLinkState: failed',
-    ),
-    (
-        'set_link_state',
-        {'link_state': {'link_name': 'body', 'reference_frame': 'base'}},
-        True,
-        'SetLinkState: success',
-    ),
-    (
-        'set_model_configuration',
-        {'model_name': 'nope'},
-        False,
-        'SetModelConfiguration: model does not exist',
-    ),
+    ('set_link_state', {'link_state': {'link_name': 'nope'}}, 'link does not exist'),
+    ('set_link_state', {'link_state': {'link_name': 'rod', 'reference_frame': 'box'}}, 'failed'),
+    ('set_model_configuration', {'model_name': 'nope'}, NO_MODEL),
     (
         'set_model_configuration',
         {'model_name': 'arm', 'joint_names': ['hinge']},
-        False,
-        'SetModelConfiguration: joint name and position list have different lengths',
-    ),
-    (
-        'set_model_configuration',
-        {'model_name': 'arm', 'joint_names': ['nope'], 'joint_positions': [1.0]},
-        True,
-        'SetModelConfiguration: success',
+        'joint name and position list have different lengths',
     ),
     (
         'set_model_configuration',
         {'model_name': 'arm', 'joint_names': ['hinge'], 'joint_positions': [math.inf]},
-        False,
-        'SetModelConfiguration: Failure - joint_positions[0] is inf; it must be a finite number',
+        'Failure - joint_positions[0] is inf; it must be a finite number',
     ),
-    ('set_joint_properties', {'joint_name': 'nope'}, False, 'SetJointProperties: joint not found'),
-    ('set_joint_properties', {'joint_name': 'hinge'}, True, 'SetJointProperties: properties set'),
+    ('set_joint_properties', {'joint_name': 'nope'}, 'joint not found'),
     (
         'set_joint_properties',
         {'joint_name': 'hinge', 'ode_joint_config': {'loStop': [2.0]}},
-        False,
-        "SetJointProperties: Failure - loStop 2 of joint 'hinge' is above hiStop 1",
+        "Failure - loStop 2 of joint 'hinge' is above hiStop 1",
     ),
     (
         'set_joint_properties',
         {'joint_name': 'hinge', 'ode_joint_config': {'damping': [-1.0]}},
-        False,
-        "SetJointProperties: Failure - damping of joint 'hinge' is -1; it must not be negative",
+        "Failure - damping of joint 'hinge' is -1; it must not be negative",
     ),
-    ('set_link_properties', {'link_name': 'nope'}, False, NO_LINK.format('SetLinkProperties')),
+    ('set_link_properties', {'link_name': 'nope'}, NO_LINK),
     (
         'set_link_properties',
         {'link_name': 'box::body', 'mass': 0.0},
-        False,
-        "SetLinkProperties: Failure - mass is 0.0; link 'box::body' moves, so it must be greater "
-        'than zero [kg]',
+        "Failure - mass is 0.0; link 'box::body' moves, so it must be greater than zero [kg]",
     ),
     (
         'set_link_properties',
         {'link_name': 'box::body', 'mass': 1.0, 'ixx': -1.0},
-        False,
-        "SetLinkProperties: Failure - the inertia tensor for link 'box::body' has a negative "
-        'principal moment; give the tensor about the centre of mass [kg m^2]',
+        "Failure - the inertia tensor for link 'box::body' has a negative principal moment; give "
+        'the tensor about the centre of mass [kg m^2]',
     ),
     (
         'set_link_properties',
         {'link_name': 'box::body', 'mass': 1.0, 'com': {'position': {'y': -1e308}}},
-        False,
-        "SetLinkProperties: Failure - com.position of link 'box::body' is -1e+308 m from its "
-        'frame; '
-        'at most 1e+07 m are accepted',
+        "Failure - com.position of link 'box::body' is -1e+308 m from its frame; at most 1e+07 m "
+        'are accepted',
     ),
-    (
-        'set_link_properties',
-        {'link_name': 'box::body', 'mass': 2.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0},
-        True,
-        'SetLinkProperties: properties set',
-    ),
-    (
-        'get_light_properties',
-        {'light_name': 'nope'},
-        False,
-        'getLightProperties: Requested light nope not found!',
-    ),
-    ('get_light_properties', {'light_name': 'sun'}, True, ''),
-    (
-        'set_light_properties',
-        {'light_name': 'nope'},
-        False,
-        'setLightProperties: Requested light nope not found!',
-    ),
+    ('delete_model', {'model_name': 'nope'}, NO_MODEL),
+    ('delete_model', {'model_name': ''}, NO_MODEL),
     (
         'delete_light',
         {'light_name': 'nope'},
-        False,
-        'DeleteLight: Timeout reached while removing light "nope"',
+        'Timeout reached while removing light "nope"',
     ),
-    ('apply_body_wrench', {'body_name': 'nope'}, False, 'ApplyBodyWrench: body does not exist'),
+    ('apply_body_wrench', {'body_name': 'nope'}, 'body does not exist'),
     (
         'apply_body_wrench',
         {'body_name': 'rod', 'reference_frame': 'nope'},
-        False,
-        'ApplyBodyWrench: reference_frame not found',
+        'reference_frame not found',
     ),
     (
         'apply_body_wrench',
         {'body_name': 'rod', 'wrench': {'torque': {'z': math.nan}}},
-        False,
-        f'ApplyBodyWrench: Failure - wrench.torque.z is {NAN}',
+        f'Failure - wrench.torque.z is {NAN}',
     ),
-    ('apply_body_wrench', {'body_name': 'rod', 'reference_frame': 'arm::base'}, True, ''),
-    ('apply_joint_effort', {'joint_name': 'nope'}, False, 'ApplyJointEffort: joint not found'),
+    ('apply_joint_effort', {'joint_name': 'nope'}, 'joint not found'),
     (
         'apply_joint_effort',
         {'joint_name': 'hinge', 'effort': math.nan},
-        False,
-        f'ApplyJointEffort: Failure - effort is {NAN}',
-    ),
-    ('apply_joint_effort', {'joint_name': 'hinge'}, True, 'ApplyJointEffort: effort set'),
-    (
-        'spawn_sdf_model',
-        {'model_name': 'new', 'model_xml': 'hello world'},
-        False,
-        'GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, '
-        'or cannot be converted to Gazebo compatible format.',
+        f'Failure - effort is {NAN}',
     ),
     (
         'spawn_sdf_model',
         {'model_name': 'new', 'model_xml': SDF, 'reference_frame': 'nope'},
-        False,
-        'SpawnModel: reference reference_frame not found, '
-        'did you forget to scope the link by model name?',
+        NO_FRAME.format('reference_frame', 'link'),
+    ),
+    ('spawn_sdf_model', {'model_name': 'box', 'model_xml': SDF}, EXISTS),
+    ('spawn_urdf_model', {'model_name': 'box', 'model_xml': BOX}, EXISTS),
+    ('spawn_sdf_model', {'model_name': 'sun', 'model_xml': LIGHT}, EXISTS),
+]
+# Refusals whose texts begin otherwise, whole.
+OTHER_REFUSALS = [
+    (
+        'get_light_properties',
+        {'light_name': 'nope'},
+        'getLightProperties: Requested light nope not found!',
+    ),
+    (
+        'set_light_properties',
+        {'light_name': 'nope'},
+        'setLightProperties: Requested light nope not found!',
     ),
     (
         'spawn_sdf_model',
-        {'model_name': 'box', 'model_xml': SDF},
-        False,
-        'SpawnModel: Failure - entity already exists.',
+        {'model_name': 'new', 'model_xml': 'hello world'},
+        'GazeboRosApiPlugin SpawnModel Failure: input model_xml not SDF or URDF, '
+        'or cannot be converted to Gazebo compatible format.',
+    ),
+]
+# Of what is done: service, request, whole text.
+DONE = [
+    ('get_model_properties', {'model_name': 'arm'}, 'GetModelProperties: got properties'),
+    ('get_joint_properties', {'joint_name': 'arm::hinge'}, 'GetJointProperties: got properties'),
+    ('get_joint_properties', {'joint_name': 'weld'}, 'GetJointProperties: got properties'),
+    ('get_link_properties', {'link_name': 'arm::rod'}, 'GetLinkProperties: got properties'),
+    ('get_link_state', {'link_name': 'rod', 'reference_frame': 'map'}, 'GetLinkState: got state'),
+    (
+        'set_model_state',
+        {'model_state': {'model_name': 'box', 'reference_frame': 'world'}},
+        'SetModelState: set model state done',
     ),
     (
-        'spawn_sdf_model',
-        {'model_name': 'sun', 'model_xml': LIGHT},
-        False,
-        'SpawnModel: Failure - entity already exists.',
+        'set_link_state',
+        {'link_state': {'link_name': 'body', 'reference_frame': 'base'}},
+        'SetLinkState: success',
     ),
-    ('spawn_sdf_model', {'model_name': 'new', 'model_xml': SDF}, True, SPAWNED),
-    ('spawn_sdf_model', {'model_name': 'newer', 'model_xml': BOX}, True, SPAWNED),
+    (
+        'set_model_configuration',
+        {'model_name': 'arm', 'joint_names': ['nope'], 'joint_positions': [1.0]},
+        'SetModelConfiguration: success',
+    ),
+    ('set_joint_properties', {'joint_name': 'hinge'}, 'SetJointProperties: properties set'),
+    (
+        'set_link_properties',
+        {'link_name': 'box::body', 'mass': 2.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0},
+        'SetLinkProperties: properties set',
+    ),
+    ('get_light_properties', {'light_name': 'sun'}, ''),
+    ('apply_body_wrench', {'body_name': 'rod', 'reference_frame': 'arm::base'}, ''),
+    ('apply_joint_effort', {'joint_name': 'hinge'}, 'ApplyJointEffort: effort set'),
+    ('spawn_sdf_model', {'model_name': 'new', 'model_xml': SDF}, SPAWNED),
+    ('spawn_sdf_model', {'model_name': 'newer', 'model_xml': BOX}, SPAWNED),
 ]
 
 
@@ -270,11 +213,20 @@ class OutcomesTest(SimulatorTest):
         self.spawn('arm', ARM, pose(2.0, 0.0, 50.0))
         self.spawn('box', BOX, pose(0.0, 0.0, 50.0))
 
-    def _call(self, name, **fields):
+    def _service(self, name):
+        """Return the class and the proxy of a service."""
         if name not in self._services:
             kind = rosservice.get_service_class_by_name(f'/gazebo/{name}')
             self._services[name] = kind, proxy(name, kind)
-        kind, service = self._services[name]
+        return self._services[name]
+
+    def _named(self, refusal):
+        """Return a refusal with the name of the service's type before its text."""
+        name, fields, text = refusal
+        return name, fields, f'{self._service(name)[0].__name__}: {text}'
+
+    def _call(self, name, **fields):
+        kind, service = self._service(name)
         return service(filled(kind._request_class(), fields))
 
     def _done(self, name, **fields):
@@ -283,7 +235,11 @@ class OutcomesTest(SimulatorTest):
         return response
 
     def test_every_outcome(self):
-        for name, fields, success, text in OUTCOMES:
+        outcomes = [
+            *((*refusal, False) for refusal in (*map(self._named, REFUSALS), *OTHER_REFUSALS)),
+            *((*done, True) for done in DONE),
+        ]
+        for name, fields, text, success in outcomes:
             with self.subTest(f'{name} {fields}'):
                 response = self._call(name, **fields)
                 self.assertEqual((response.success, response.status_message), (success, text))
@@ -316,8 +272,7 @@ class OutcomesTest(SimulatorTest):
             Twist(Vector3(1.0, 0.0, 0.0), Vector3(0.0, 1.0, 0.0)),
             'box::body',
         )
-        proxy_response = self._services['set_model_state'][1](state)
-        self.assertTrue(proxy_response.success)
+        self.assertTrue(self._service('set_model_state')[1](state).success)
         arm = self.model_state('arm', '')
         for part, expected in (
             (arm.pose.position, (1.0, 5.0, 51.0)),
@@ -330,18 +285,15 @@ class OutcomesTest(SimulatorTest):
         self.assertEqual(self.model_state('box', '').pose.orientation.w, 1.0)
 
     def _set_model(self, name, where):
-        self._call('set_model_state')  # creates the proxy
-        response = self._services['set_model_state'][1](ModelState(name, where, Twist(), ''))
-        self.assertTrue(response.success)
+        _, set_state = self._service('set_model_state')
+        self.assertTrue(set_state(ModelState(name, where, Twist(), '')).success)
 
     def test_states_by_topic(self):
         for topic, message, link in (
             ('set_model_state', ModelState('box', pose(7.0), Twist(), ''), 'body'),
             ('set_link_state', LinkState('base', pose(8.0), Twist(), 'world'), 'base'),
         ):
-            publisher = rospy.Publisher(f'/gazebo/{topic}', type(message), queue_size=1)
-            self._connections.append(publisher)
-            wait_until(publisher.get_num_connections, f'{topic} connected')
+            publisher = self.publisher(f'/gazebo/{topic}', type(message))
             publisher.publish(type(message)())  # without a name: an error in the log
             publisher.publish(message)
 
@@ -387,8 +339,7 @@ class OutcomesTest(SimulatorTest):
             self.assertAlmostEqual(joint.position[0], reached)
             self.assertEqual((len(joint.rate), joint.type, list(joint.damping)), (1, 0, []))
         limits = ODEJointProperties(hiStop=[2.0], damping=[0.1])
-        self._call('set_joint_properties', joint_name='hinge')
-        self.assertTrue(self._services['set_joint_properties'][1]('hinge', limits).success)
+        self.assertTrue(self._service('set_joint_properties')[1]('hinge', limits).success)
         self._done(
             'set_model_configuration',
             model_name='arm',

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Outcomes and texts of the services, as gazebo_ros 2.9.2 has them."""
+"""Services in a running world, as gazebo_ros 2.9.2 has them; test_outcomes.py has the texts."""
 
 import math
 import sys
@@ -7,14 +7,9 @@ import sys
 import rospy
 import rostest
 from geometry_msgs.msg import Point, Pose, Quaternion
-from rosbots_msgs.srv import Step
-from simulator import BOX, GROUND, SimulatorTest, pose, proxy, topics_of, wait_until
+from simulator import BOX, GROUND, SimulatorTest, pose, topics_of, wait_until
 
 SPAWNED = 'SpawnModel: Successfully spawned entity'
-NO_FRAME = (
-    'SpawnModel: reference reference_frame not found, '
-    'did you forget to scope the link by model name?'
-)
 
 
 class ServicesTest(SimulatorTest):
@@ -27,11 +22,6 @@ class ServicesTest(SimulatorTest):
         self.assertEqual(response.model_names, [GROUND])
         self.assertTrue(response.rendering_enabled)
         self.assertGreater(response.sim_time, 0.0)
-
-    def test_spawn_and_duplicate_name(self):
-        self._assert_outcome(self.spawn(), True, SPAWNED)
-        self._assert_outcome(self.spawn(), False, 'SpawnModel: Failure - entity already exists.')
-        self.assertEqual(self.world().model_names, [GROUND, 'rosbots'])
 
     def test_spawn_in_frames(self):
         self.pause()
@@ -47,7 +37,7 @@ class ServicesTest(SimulatorTest):
         for frame in ('', 'world', 'map', '/map'):
             self._assert_outcome(self.spawn('b', BOX, pose(2.0, 0.0, 0.0), frame), True, SPAWNED)
             self.delete('b')
-        self._assert_outcome(self.spawn('b', BOX, pose(), 'odom'), False, NO_FRAME)
+        self.assertFalse(self.spawn('b', BOX, pose(), 'odom').success)
 
     def test_spawn_and_delete_while_paused(self):
         self.pause()
@@ -58,10 +48,6 @@ class ServicesTest(SimulatorTest):
             self.delete('rosbots'), True, 'DeleteModel: successfully deleted model'
         )
         self.assertNotIn('/odom', topics_of())
-
-    def test_delete_a_missing_model(self):
-        for name in ('not_there', ''):
-            self._assert_outcome(self.delete(name), False, 'DeleteModel: model does not exist')
 
     def test_model_state(self):
         self.pause()
@@ -78,29 +64,11 @@ class ServicesTest(SimulatorTest):
         self.assertEqual(relative.header.seq, response.header.seq + 1)
         self.assertEqual(relative.header.frame_id, 'ground_plane::link')
 
-    def test_state_of_a_missing_model(self):
-        response = self.model_state('nope', '')
-        self._assert_outcome(response, False, 'GetModelState: model does not exist')
-        self.assertEqual(response.pose, Pose())
-        response = self.model_state(GROUND, 'nope')
-        self._assert_outcome(
-            response,
-            False,
-            'GetModelState: reference relative_entity_name not found, '
-            'did you forget to scope the body by model name?',
-        )
-        self.assertEqual(response.pose, Pose())
+    def test_state_of_a_missing_model_has_no_pose(self):
+        for response in (self.model_state('nope', ''), self.model_state(GROUND, 'nope')):
+            self.assertFalse(response.success)
+            self.assertEqual(response.pose, Pose())
         self.assertEqual(response.header.frame_id, 'nope')
-
-    def test_body_falls_with_gazebos_gravity(self):
-        self.pause()
-        self.spawn('box', BOX, pose(z=100.0))
-        first = self.model_state('box', '')
-        self.assertTrue(proxy('step', Step)(500).success)
-        second = self.model_state('box', '')
-        fallen = (second.header.stamp - first.header.stamp).to_sec()
-        gained = second.twist.linear.z - first.twist.linear.z
-        self.assertAlmostEqual(gained / fallen, -9.8, places=3)
 
     def test_repeated_pause_and_unpause_succeed(self):
         for _ in range(2):
