@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Invalid input is answered with Gazebo's text or an error message; other robots drive on."""
+"""Other robots drive on beside irregular models, plugins, topics and commands.
+
+Descriptions, names and numbers that are rejected are in test_hostile.py.
+"""
 
 import math
 import sys
@@ -7,63 +10,28 @@ import sys
 import rospy
 import rostest
 from gazebo_msgs.srv import GetLinkState, GetModelProperties
-from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from simulator import BOX, COMMANDS, SimulatorTest, pose, proxy, topics_of, wait_until
+from simulator import BOX, SimulatorTest, pose, proxy, topics_of, wait_until
 
-LINK = (
-    '<link name="{}"><inertial><mass value="1"/>'
-    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{}</link>'
+MASSLESS = (
+    '<link name="ghost"/><joint name="j" type="continuous"><parent link="body"/>'
+    '<child link="ghost"/></joint>'
 )
-MESH = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
-
-
-def robot(*parts):
-    return f'<robot name="bad">{"".join(parts)}</robot>'
-
-
-# Input, and words that the error message must contain: location, fault or cure.
-REFUSED = {
-    'unclosed tags': ('<robot name="bad"><link name="a">', ['line']),
-    'mesh path out of its package': (
-        robot(LINK.format('a', MESH.format('package://rosbots_description/%2e%2e/m.stl'))),
-        ['leads out of package'],
-    ),
-    'crossed tags': ('<robot name="bad"><link name="a"></robot></link>', ['line']),
-    'endless comment': (robot('<!-- ', LINK.format('a', '')), ['<!--', '-->']),
-    'no inertial': (robot('<link name="a"/>'), ["'a'", '<inertial>']),
-    'mass of zero': (robot(LINK.format('a', '').replace('value="1"', 'value="0"')), ['mass']),
-    'no links': (robot(), ['link']),
-    'unexpanded xacro': (
-        '<robot name="bad" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:wheel/></robot>',
-        ['xacro'],
-    ),
-    'two roots': (robot(LINK.format('a', ''), LINK.format('b', '')), ['a', 'b']),
-    'duplicate names': (robot(LINK.format('a', ''), LINK.format('a', '')), ["'a'"]),
-    'joint to a missing link': (
-        robot(
-            LINK.format('a', ''),
-            '<joint name="j" type="fixed"><parent link="a"/><child link="gone"/></joint>',
-        ),
-        ['gone'],
-    ),
-    'mass of nan': (robot(LINK.format('a', '').replace('value="1"', 'value="nan"')), ['nan']),
-    'negative mass': (robot(LINK.format('a', '').replace('value="1"', 'value="-1"')), ['-1']),
-}
-CALL_ERRORS = {
-    'text': ('hello world', 'entity format is invalid'),
-    'nothing': ('', 'entity format is invalid'),
-    'sdf': ('<sdf version="1.6"><model name="m"/></sdf>', 'entity format is invalid'),
-    'unknown package': (
-        robot(LINK.format('a', MESH.format('package://no_such_pkg/m.dae'))),
-        'no_such_pkg',
-    ),
-}
 UNKNOWN_JOINT = (
     '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
     '<leftJoint>nojoint</leftJoint></plugin></gazebo>'
 )
+UNKNOWN_LIBRARY = '<gazebo><plugin name="n" filename="libnope.so"/></gazebo>'
+REFUSED = (  # unclosed, without a mass, without a link
+    '<robot name="bad"><link name="a">',
+    '<robot name="bad"><link name="a"/></robot>',
+    '<robot name="bad"/>',
+)
+
+
+def box_with(text):
+    return BOX.replace('</robot>', f'{text}</robot>')
 
 
 class BadInputTest(SimulatorTest):
@@ -80,49 +48,20 @@ class BadInputTest(SimulatorTest):
         here = self.x_of('neighbour')
         wait_until(lambda: self.x_of('neighbour') > here + 0.02, 'motion of the neighbour')
 
-    def _assert_rejected(self, response, *words):
-        self.assertFalse(response.success)
-        self.assertTrue(response.status_message.startswith('SpawnModel: Failure - '))
-        for word in words:
-            self.assertIn(word, response.status_message)
-        self.assertNotIn('\n', response.status_message)
-        self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
-
-    def test_descriptions_that_cannot_be_simulated_are_rejected(self):
-        for case, (xml, words) in REFUSED.items():
-            with self.subTest(case):
-                self._assert_rejected(self.spawn('bad', xml), *words)
-        self._assert_neighbour_drives()
-
-    def test_other_texts_than_descriptions_are_rejected(self):
-        for case, (xml, words) in CALL_ERRORS.items():
-            with self.subTest(case):
-                with self.assertRaises(rospy.ServiceException) as raised:
-                    self.spawn('bad', xml)
-                self.assertIn(words, str(raised.exception))
-        self._assert_neighbour_drives()
-
     def test_failing_spawn_while_paused_is_answered_without_a_step(self):
         self.pause()
         before = self.world().sim_time
-        for xml, words in REFUSED.values():
-            self._assert_rejected(self.spawn('bad', xml), *words)
+        for xml in REFUSED:
+            self.assertFalse(self.spawn('bad', xml).success)
         self.assertEqual(self.world().sim_time, before)
+        self.assertEqual(self.world().model_names, ['ground_plane', 'neighbour'])
         self.unpause()
         self._assert_neighbour_drives()
 
     def test_irregular_models_accepted_by_gazebo_are_spawned(self):
-        massless = ''.join(
-            (
-                LINK.format('base', ''),
-                '<link name="ghost"/>',
-                '<joint name="j" type="continuous"><parent link="base"/><child '
-                'link="ghost"/></joint>',
-            )
-        )
-        self.assertTrue(self.spawn('half', robot(massless), pose(x=5.0)).success)
+        self.assertTrue(self.spawn('half', box_with(MASSLESS), pose(x=5.0)).success)
         properties = proxy('get_model_properties', GetModelProperties)('half')
-        self.assertEqual((properties.body_names, properties.joint_names), (['base'], []))
+        self.assertEqual((properties.body_names, properties.joint_names), (['body'], []))
         unturnable = BOX.replace('ixx="1" iyy="1" izz="1"', 'ixx="0" iyy="0" izz="0"')
         self.assertTrue(self.spawn('stiff', unturnable, pose(x=8.0, z=1.0)).success)
         wait_until(lambda: self.model_state('stiff', '').pose.position.z < 0.502, 'the box at rest')
@@ -141,19 +80,9 @@ class BadInputTest(SimulatorTest):
             )
         self.assertTrue(link_state('neighbour::base_footprint', '').success)
 
-    def test_empty_name_and_invalid_pose(self):
-        self._assert_rejected(self.spawn('', BOX), 'name')
-        self._assert_rejected(self.spawn('bad', BOX, pose(x=math.nan)), 'bad', 'not finite')
-        self._assert_rejected(self.spawn('bad', BOX, pose(z=math.inf)), 'bad', 'not finite')
-        self._assert_neighbour_drives()
-
     def test_model_is_spawned_without_a_failing_plugin(self):
-        xml = BOX.replace('</robot>', UNKNOWN_JOINT + '</robot>')
-        self.assertTrue(self.spawn('bad', xml).success)
-        unknown = BOX.replace(
-            '</robot>', '<gazebo><plugin name="n" filename="libnope.so"/></gazebo></robot>'
-        )
-        self.assertTrue(self.spawn('worse', unknown, pose(x=5.0)).success)
+        self.assertTrue(self.spawn('bad', box_with(UNKNOWN_JOINT)).success)
+        self.assertTrue(self.spawn('worse', box_with(UNKNOWN_LIBRARY), pose(x=5.0)).success)
         self._assert_neighbour_drives()
 
     def test_invalid_topics_are_left_out(self):
@@ -179,11 +108,8 @@ class BadInputTest(SimulatorTest):
         odometry.clear()
         wait_until(lambda: len(odometry) > 50, 'half a second of driving')
         self.assertTrue(all(m.twist.twist.linear.x > 0.2 for m in odometry))
-        publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
-        wait_until(publisher.get_num_connections, 'a subscriber')
         self._drive(0.0)
         wait_until(lambda: abs(odometry[-1].twist.twist.linear.x) < 0.01, 'a stop')
-        publisher.unregister()
 
 
 if __name__ == '__main__':
