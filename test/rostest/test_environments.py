@@ -16,7 +16,7 @@ import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from server_process import ServerProcess
-from simulator import BOX, DEADLINE, GROUND, pose, wait_until
+from simulator import BOX, DEADLINE, GROUND, pose, proxy, wait_until
 
 from rosbots_description.cli.launched import Launched
 
@@ -76,13 +76,8 @@ ROBOT = """<?xml version="1.0" encoding="utf-8"?>
 </link></robot>"""
 
 
-def service(name, service_type):
-    rospy.wait_for_service(f'/harsh/{name}', DEADLINE)
-    return rospy.ServiceProxy(f'/harsh/{name}', service_type)
-
-
 def world():
-    return service('get_world_properties', GetWorldProperties)()
+    return proxy('get_world_properties', GetWorldProperties, '/harsh')()
 
 
 def fill(path):
@@ -95,7 +90,7 @@ def fill(path):
 class EnvironmentsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.root = Path(tempfile.mkdtemp())
+        cls.root = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.root.chmod(0o755)  # also for a user without privileges
         cls.folder = cls.root / "Mein Roboter ä %41 #&'"
         model = cls.folder / 'models' / 'tür'
@@ -108,10 +103,6 @@ class EnvironmentsTest(unittest.TestCase):
             (cls.folder / f'bär {name}.urdf').write_text(
                 ROBOT.format(quoteattr(uri)), encoding='utf-8'
             )
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.root)
 
     def require(self, *command, **environment):
         """Skip the test where the machine does not permit such namespaces."""
@@ -131,7 +122,7 @@ class EnvironmentsTest(unittest.TestCase):
 
     @staticmethod
     def spawn(name, xml):
-        return service('spawn_urdf_model', SpawnModel)(name, xml, '/', pose(), '')
+        return proxy('spawn_urdf_model', SpawnModel, '/harsh')(name, xml, '/', pose(), '')
 
     def assert_carries_the_robot(self):
         """Assert that the article's robot, with meshes, can be spawned and time advances."""
@@ -264,8 +255,8 @@ class EnvironmentsTest(unittest.TestCase):
         ) as launched:
             rospy.wait_for_service('/gazebo/unpause_physics', 2 * DEADLINE)
             wait_until(lambda: 'gzclient: no window' in log.read_text(), 'the message')
-            models = rospy.ServiceProxy('/gazebo/get_world_properties', GetWorldProperties)
-            self.assertEqual(models().model_names, [GROUND])
+            models = proxy('get_world_properties', GetWorldProperties)().model_names
+            self.assertEqual(models, [GROUND])
             self.assertTrue(launched.running)
         self.assertIn('DISPLAY is not set', log.read_text())
 

@@ -22,8 +22,8 @@ BUILD_LIMIT = 600.0  # [s, wall]; usually a tenth of that
 class ForeignPackageTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls._folder = tempfile.TemporaryDirectory(prefix='foreign_')
-        cls.workspace = Path(cls._folder.name)
+        folder = tempfile.TemporaryDirectory(prefix='foreign_')
+        cls.workspace = Path(cls.enterClassContext(folder))
         shutil.copytree(SOURCE, cls.workspace / 'source')
         cls.run_command(
             'cmake',
@@ -35,10 +35,6 @@ class ForeignPackageTest(unittest.TestCase):
             f'-DPYTHON_EXECUTABLE={sys.executable}',
         )
         cls.run_command('cmake', '--build', 'build')
-
-    @classmethod
-    def tearDownClass(cls):
-        cls._folder.cleanup()
 
     @classmethod
     def run_command(cls, *command):

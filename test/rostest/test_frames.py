@@ -3,8 +3,6 @@
 
 import os
 import re
-import shutil
-import signal
 import sys
 import tempfile
 import unittest
@@ -56,8 +54,7 @@ class FramesTest(unittest.TestCase):
         cls.addClassCleanup(open_display())
 
     def setUp(self):
-        self._folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self._folder)
+        self._folder = self.enterContext(tempfile.TemporaryDirectory())
         self._view = Path(self._folder, debian_rviz.SAVED)
         debian_rviz.draw_seldom(self._view)
         self.enterContext(mock.patch.dict(os.environ, HOME=self._folder))
@@ -84,17 +81,8 @@ class FramesTest(unittest.TestCase):
     def open(self, *command):
         terminal = Terminal(*command)
         self.addCleanup(terminal.close)
-        self.addCleanup(self.end, terminal)
+        self.addCleanup(terminal.end)
         return terminal
-
-    def end(self, terminal):
-        if terminal.process.poll() is None:
-            os.killpg(terminal.process.pid, signal.SIGINT)
-            wait_until(
-                lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-                'the end',
-                STEP,
-            )
 
     def rviz(self, own=False):
         """Launch rviz.launch, a reader's or ours, and wait until RViz is ready."""
@@ -103,7 +91,7 @@ class FramesTest(unittest.TestCase):
             Path(words[0]).write_text(ARTICLE)
         else:
             words = ['rosbots_description', 'rviz.launch', f'rviz_config:={self._view}']
-        return debian_rviz.start(lambda: self.open('roslaunch', *words), self.end, STEP)
+        return debian_rviz.start(lambda: self.open('roslaunch', *words), STEP)
 
     def simulator(self, *arguments):
         terminal = self.open('roslaunch', 'gazebo_ros', 'empty_world.launch', *arguments)
@@ -170,7 +158,7 @@ class FramesTest(unittest.TestCase):
         self.assertEqual(self.drive(), BY_THE_TAGS)
         view = self.rviz()
         self.assert_complete_and_quiet([view, simulator])
-        self.end(view)
+        view.end()
         wait_until(lambda: self.drive() == BY_THE_TAGS, 'the frames by the tags', STEP)
 
     def test_a_readers_own_rviz_before_the_simulator(self):

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from functools import partial
 
 import rospy
 import rostest
@@ -18,10 +19,10 @@ MODEL = """<sdf version="1.6"><model name="any"><link name="body">
 </link></model></sdf>"""
 
 
-def gz(*arguments, code=0, **options):
-    """Return what a command prints, on the stream that fits its exit code."""
+def run(*command, code=0, **options):
+    """Return what a program prints, on the stream that fits its exit code."""
     ended = subprocess.run(
-        ['gz', *arguments],
+        command,
         capture_output=True,
         text=True,
         timeout=3 * DEADLINE,
@@ -29,8 +30,11 @@ def gz(*arguments, code=0, **options):
         **options,
     )
     if ended.returncode != code:
-        raise AssertionError(f'gz {arguments} ended with {ended.returncode}: {ended.stderr}')
+        raise AssertionError(f'{command} ended with {ended.returncode}: {ended.stderr}')
     return ended.stderr if code else ended.stdout
+
+
+gz = partial(run, 'gz')
 
 
 class GzTest(SimulatorTest):
@@ -81,21 +85,13 @@ class GzTest(SimulatorTest):
             (False, "SaveWorld: Failure - 'crate.world' is not an absolute path"),
         )
         with tempfile.TemporaryDirectory() as folder:
+            run('rosrun', 'gazebo_ros', 'save_world', 'a.world', cwd=folder)
             for file, complaint in (
-                ('a.world', ''),
                 ('a.world', 'it exists already'),
                 ('a.txt', 'ends in .world or .sdf'),
             ):
-                ended = subprocess.run(
-                    ['rosrun', 'gazebo_ros', 'save_world', file],
-                    cwd=folder,
-                    check=False,
-                    capture_output=True,
-                    text=True,
-                    timeout=3 * DEADLINE,
-                )
-                self.assertEqual(ended.returncode, int(bool(complaint)), ended.stderr)
-                self.assertIn(complaint, ended.stderr)
+                said = run('rosrun', 'gazebo_ros', 'save_world', file, cwd=folder, code=1)
+                self.assertIn(complaint, said)
             self.assertEqual(os.listdir(folder), ['a.world'])
             with open(f'{folder}/a.world', encoding='utf-8') as file:
                 self.assertEqual(file.read(), answer.sdf)
@@ -104,23 +100,8 @@ class GzTest(SimulatorTest):
         self.pause()
         gz('model', '-s', '-m', 'crate', '-z', '0.5', '-x', '0.5', '-y', '0.5', input=MODEL)
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run(
-                [
-                    'rosrun',
-                    'rosbots_simulator',
-                    'save_map',
-                    'crate',
-                    '--resolution',
-                    '0.5',
-                    '--margin',
-                    '0.5',
-                    '--height',
-                    '0.3',
-                ],
-                cwd=folder,
-                check=True,
-                timeout=3 * DEADLINE,
-            )
+            options = ('--resolution', '0.5', '--margin', '0.5', '--height', '0.3')
+            run('rosrun', 'rosbots_simulator', 'save_map', 'crate', *options, cwd=folder)
             self.assertEqual(sorted(os.listdir(folder)), ['crate.pgm', 'crate.yaml'])
             with open(f'{folder}/crate.pgm', 'rb') as file:
                 free, full = bytes([254] * 4), bytes([254, 0, 0, 254])

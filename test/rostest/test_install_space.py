@@ -2,7 +2,6 @@
 """Everything works from the install space, without the source tree."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -23,7 +22,7 @@ OURS = ('ROS_PACKAGE_PATH', 'PYTHONPATH', 'CMAKE_PREFIX_PATH', 'LD_LIBRARY_PATH'
 class InstallSpaceTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.root = Path(tempfile.mkdtemp())
+        cls.root = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         subprocess.run(
             ['make', '-C', str(BUILD), 'install'],
             env={**os.environ, 'DESTDIR': str(cls.root)},
@@ -32,10 +31,6 @@ class InstallSpaceTest(unittest.TestCase):
             timeout=PATIENCE,
         )
         (cls.setup,) = cls.root.rglob('install/setup.bash')
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.root)
 
     def start(self, command):
         """Run a command in an environment with the install space and without the source tree."""

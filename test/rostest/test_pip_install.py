@@ -34,7 +34,7 @@ EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
 class PipInstallTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = Path(tempfile.mkdtemp())
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         source = cls.folder / 'source'  # a copy, since building leaves files behind
         source.mkdir()
         for part in PARTS:
@@ -48,7 +48,7 @@ class PipInstallTest(unittest.TestCase):
                 shutil.copy(ROOT / part, source)
         cls.venv = cls.folder / 'venv'
         subprocess.run(['/usr/bin/python3', '-m', 'venv', str(cls.venv)], check=True)
-        installed = cls.run_there(
+        installed = cls.run_python(
             '-m', 'pip', 'install', '--disable-pip-version-check', '--no-input', f'{source}[gym]'
         )
         if installed.returncode and NO_INDEX.search(installed.stdout):
@@ -57,14 +57,15 @@ class PipInstallTest(unittest.TestCase):
         assert installed.returncode == 0, installed.stdout
 
     @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
+    def run_python(cls, *arguments):
+        """Run the Python of the venv, without this source tree on its path."""
+        return cls.run_there('python', '-I', *arguments)
 
     @classmethod
-    def run_there(cls, *arguments):
-        """Run the Python of the venv, without ROS and this source tree on its path."""
+    def run_there(cls, program, *arguments):
+        """Run a program of the venv, without ROS."""
         return subprocess.run(
-            [str(cls.venv / 'bin' / 'python'), '-I', *arguments],
+            [str(cls.venv / 'bin' / program), *arguments],
             cwd=cls.folder,
             text=True,
             env={'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)},
@@ -75,7 +76,7 @@ class PipInstallTest(unittest.TestCase):
         )
 
     def test_all_imports_are_declared(self):
-        checked = self.run_there('-m', 'pip', '--disable-pip-version-check', 'check')
+        checked = self.run_python('-m', 'pip', '--disable-pip-version-check', 'check')
         self.assertEqual(checked.returncode, 0, checked.stdout)
         modules = [
             '.'.join(path.relative_to(ROOT / 'src').with_suffix('').parts).removesuffix('.__init__')
@@ -83,7 +84,7 @@ class PipInstallTest(unittest.TestCase):
             for path in (ROOT / 'src' / 'rosbots_description' / folder).rglob('*.py')
             if path.stem != 'window'  # which needs [web]
         ]
-        imported = self.run_there(
+        imported = self.run_python(
             '-c',
             'import importlib, sys\n'
             'for name in sys.argv[1:]: importlib.import_module(name)\n'
@@ -101,16 +102,7 @@ class PipInstallTest(unittest.TestCase):
             self.assertTrue((share / part).is_file(), part)
 
     def test_the_program_is_installed_and_says_what_it_lacks(self):
-        ran = subprocess.run(
-            [str(self.venv / 'bin' / 'rosbots-view'), 'room'],
-            cwd=self.folder,
-            text=True,
-            env={'PATH': '/usr/bin:/bin', 'HOME': str(self.folder)},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=PATIENCE,
-            check=False,
-        )
+        ran = self.run_there('rosbots-view', 'room')
         self.assertEqual(ran.returncode, 1, ran.stdout)
         self.assertIn("pip install 'rosbots_description[web]'", ran.stdout)
 
@@ -122,7 +114,7 @@ class PipInstallTest(unittest.TestCase):
         examples = [one for page in pages for one in EXAMPLE.findall(page)]
         self.assertEqual(len(examples), sum(page.count('```python') for page in pages))
         for code, printed in examples:
-            ran = self.run_there('-c', f'import logging; logging.disable()\n{code}')
+            ran = self.run_python('-c', f'import logging; logging.disable()\n{code}')
             self.assertEqual((ran.returncode, ran.stdout), (0, printed))
 
 

@@ -48,9 +48,8 @@ WORLD_ONLY = """<launch>
 
 class RobotCheckTest(unittest.TestCase):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory(prefix='box robot ')
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name, 'sources')
+        holder = self.enterContext(tempfile.TemporaryDirectory(prefix='box robot '))
+        self.folder = Path(holder, 'sources')
         self.package = self.folder / 'box_robot'
         for name, content in (
             ('package.xml', MANIFEST),

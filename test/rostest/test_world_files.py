@@ -4,6 +4,7 @@
 import sys
 import tempfile
 import unittest
+from functools import partial
 from pathlib import Path
 
 import rospy
@@ -15,7 +16,7 @@ from gazebo_msgs.srv import (
     SpawnModel,
 )
 from server_process import ServerProcess
-from simulator import DEADLINE, pose, proxy, wait_until
+from simulator import pose, proxy, wait_until
 
 NAME = '__name:=other'  # beside the server that the launch file has started
 WORLD = """<sdf version="1.6"><world name="moon">
@@ -33,16 +34,13 @@ WORLD = """<sdf version="1.6"><world name="moon">
 </world></sdf>"""
 
 
-def other(service, service_type):
-    rospy.wait_for_service(f'/other/{service}', DEADLINE)
-    return rospy.ServiceProxy(f'/other/{service}', service_type)
+other = partial(proxy, node='/other')
 
 
 class WorldFilesTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.world = Path(folder.name, 'moon.world')
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.world = Path(folder, 'moon.world')
         self.world.write_text(WORLD, encoding='utf-8')
 
     def test_robot_is_spawned_in_the_users_world(self):
