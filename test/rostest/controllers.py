@@ -95,11 +95,11 @@ class ControllersTest(SimulatorTest):
             one.name: one.state for one in self.call('list_controllers', ListControllers).controller
         }
 
-    def publisher(self, topic, kind):
-        made = rospy.Publisher(topic, kind, queue_size=10)
-        self._connections.append(made)
-        wait_until(made.get_num_connections, f'a subscriber of {topic}')
-        return made
+    def run_controllers(self, names):
+        """Load and start controllers."""
+        for name in names:
+            self.assertTrue(self.load(name), self.errors)
+        self.assertTrue(self.switch(start=names), self.errors)
 
     def start(self, name, *arguments):
         """Return the process of a program of controller_manager, which prints to a pipe."""

@@ -33,6 +33,12 @@ def end(process):
     process.wait()
 
 
+def memory_of(pid):
+    """Return the resident memory of a process [bytes]."""
+    pages = int(Path(f'/proc/{pid}/statm').read_text(encoding='ascii').split()[1])
+    return pages * os.sysconf('SC_PAGE_SIZE')
+
+
 def keep(printed, name, process):
     """Add what a program has printed to the logs, which tools/rostests.py searches for errors."""
     if printed and (folder := os.environ.get('ROS_LOG_DIR')):

@@ -44,9 +44,7 @@ class ArticleTest(unittest.TestCase):
 
     def tearDown(self):
         for terminal in reversed(self._terminals):
-            if terminal.process.poll() is None:
-                os.killpg(terminal.process.pid, signal.SIGTERM)
-                terminal.process.wait(STEP)
+            terminal.end(signal.SIGTERM)
             terminal.close()
 
     def open(self, *command):
@@ -56,16 +54,6 @@ class ArticleTest(unittest.TestCase):
 
     def see(self, terminal, text):
         wait_until(lambda: text in terminal.shown(), f'{text!r} on the screen', STEP)
-
-    def close(self, terminal, code=0):
-        """Press Ctrl-C."""
-        os.killpg(terminal.process.pid, signal.SIGINT)
-        wait_until(
-            lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-            'exit of the program',
-            STEP,
-        )
-        self.assertEqual(terminal.process.returncode, code, terminal.shown())
 
     def state(self):
         answer = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)('rosbots', '')
@@ -124,9 +112,8 @@ class ArticleTest(unittest.TestCase):
         self.press(teleop, 'l', lambda state: state.pose.orientation.z, -1)
         # 9: Ctrl-C ends everything
         teleop.type('\x03')
-        wait_until(lambda: teleop.process.poll() is not None, 'exit of the teleop')
-        self.assertEqual(teleop.process.returncode, 0)
-        self.close(simulator)
+        self.assertEqual(teleop.process.wait(STEP), 0)
+        self.assertEqual(simulator.end(), 0, simulator.shown())
 
     def test_rviz_shows_the_robot(self):
         # 2: on the user's display or a virtual one
@@ -134,18 +121,10 @@ class ArticleTest(unittest.TestCase):
         if 'DISPLAY' not in os.environ:
             self.assertTrue(shutil.which('xvfb-run'), 'install xvfb')
             command = ['xvfb-run', '-a', *command]
-        view = debian_rviz.start(lambda: self.open(*command), self._end, STEP)
+        view = debian_rviz.start(lambda: self.open(*command), STEP)
         for node in ('/joint_state_publisher', '/robot_state_publisher', '/rviz'):
             wait_until(lambda node=node: node in output_of('rosnode', 'list').split(), node, STEP)
-        self._end(view)
-
-    def _end(self, terminal):
-        os.killpg(terminal.process.pid, signal.SIGINT)
-        wait_until(
-            lambda: terminal.shown() is not None and terminal.process.poll() is not None,
-            'exit of RViz',
-            STEP,
-        )
+        view.end()
 
 
 if __name__ == '__main__':

@@ -31,15 +31,6 @@ class CameraTest(SimulatorTest):
         self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
         self.assertEqual(topics_of() - before, {f'{folder}/{topic}' for topic in topics})
 
-    def wait(self, seconds):
-        end = self.world().sim_time + seconds
-        wait_until(lambda: self.world().sim_time > end, f'{seconds} s of simulated time')
-
-    def read(self, topic, message_class, count):
-        messages = self.collect(topic, message_class)
-        wait_until(lambda: len(messages) >= count, f'messages on {topic}')
-        return messages
-
     def test_images_and_camera_infos_have_equal_stamps(self):
         self.spawn_recorded(
             'camera_320', '/nsx/camera1', {*IMAGES, 'camera_info', *SETTINGS}, '/nsx'
@@ -140,9 +131,7 @@ class CameraTest(SimulatorTest):
             plugin='libgazebo_ros_triggered_camera.so',
         )
         images = self.collect('/camera1/image_raw', Image)
-        trigger = rospy.Publisher('/camera1/image_trigger', Empty, queue_size=1)
-        self.addCleanup(trigger.unregister)
-        wait_until(lambda: trigger.get_num_connections() == 1, 'the camera that is triggered')
+        trigger = self.publisher('/camera1/image_trigger', Empty)
         # Again and again, for the camera does not take pictures before it knows its reader.
         wait_until(lambda: trigger.publish(Empty()) or images, 'a picture')
         self.pause()  # steps wait for pictures then

@@ -239,9 +239,7 @@ class ControllerTopicsTest(ControllersTest):
         self.spawn_robot(
             ARM.replace('EffortJointInterface', 'PositionJointInterface'), parameters=recorded
         )
-        for name in recorded:
-            self.assertTrue(self.load(name))
-        self.assertTrue(self.switch(start=recorded))
+        self.run_controllers(recorded)
         client = actionlib.SimpleActionClient(
             '/arm/arm_controller/follow_joint_trajectory', FollowJointTrajectoryAction
         )
@@ -296,9 +294,7 @@ class ControllerTopicsTest(ControllersTest):
             ARM.replace('</robotNamespace>', '</robotNamespace><eStopTopic>stop</eStopTopic>'),
             parameters=parameters,
         )
-        for name in parameters:
-            self.assertTrue(self.load(name))
-        self.assertTrue(self.switch(start=parameters))
+        self.run_controllers(parameters)
         reports = self.collect('/arm/joint1_position_controller/state', JointControllerState)
         client = Client('/arm/joint1_position_controller/pid', timeout=DEADLINE)
         changed = client.update_configuration({'p': 55.0, 'i_clamp_max': 3.0})
@@ -321,9 +317,7 @@ class ControllerTopicsTest(ControllersTest):
                 'swing': {'type': 'my_robot/Swing', 'joint': 'joint2'},
             },
         )
-        for name in (JSC, 'swing'):
-            self.assertTrue(self.load(name), self.errors)
-        self.assertTrue(self.switch(start=[JSC, 'swing']))
+        self.run_controllers([JSC, 'swing'])
         states = self.collect('/arm/joint_states', JointState)
 
         def swings_about(centre):
@@ -340,15 +334,10 @@ class ControllerTopicsTest(ControllersTest):
     def test_a_robot_drives_by_its_diff_drive_controller(self):
         parameters = RECORDED['diff_drive_controller']['parameters']
         self.spawn_robot(BURGER, '', parameters)
-        for name in parameters:
-            self.assertTrue(self.load(name))
-        self.assertTrue(self.switch(start=parameters))
+        self.run_controllers(parameters)
         odometry = self.collect('/diff_cont/odom', Odometry)
         frames = self.collect('/tf', TFMessage)
-        command = Twist()
-        command.linear.x, command.angular.z = 0.2, 0.5
-        publisher = self.publisher('/diff_cont/cmd_vel', Twist)
-        publisher.publish(command)
+        self.driver('/diff_cont/cmd_vel')(0.2, 0.5)
         wait_until(
             lambda: any(abs(one.twist.twist.linear.x - 0.2) < 0.002 for one in list(odometry)),
             'the speed',

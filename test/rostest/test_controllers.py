@@ -5,10 +5,8 @@ import math
 import signal
 import subprocess
 import sys
-import xmlrpc.client
 from pathlib import Path
 
-import rosgraph
 import rospy
 import rostest
 from control_msgs.msg import JointControllerState
@@ -27,7 +25,7 @@ from controllers import (
 )
 from programs import find_program
 from sensor_msgs.msg import JointState
-from simulator import DEADLINE, wait_until
+from simulator import DEADLINE, process_of, wait_until
 from std_msgs.msg import Float64
 
 LAUNCH = DATA / 'controllers' / 'arm_control.launch'
@@ -155,8 +153,7 @@ class ManagersTest(ControllersTest):
 
     def test_libraries_are_reloaded_only_without_controllers_unless_forced(self):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
-        self.assertTrue(self.load(JSC))
-        self.assertTrue(self.switch(start=[JSC]))
+        self.run_controllers([JSC])
         self.assertFalse(
             self.call('reload_controller_libraries', ReloadControllerLibraries, force_kill=False).ok
         )
@@ -194,8 +191,7 @@ class ManagersTest(ControllersTest):
 
     def test_unspawner_ends_without_the_manager(self):
         self.spawn_robot(parameters={JSC: RECORDED['effort_pos']['parameters'][JSC]})
-        self.assertTrue(self.load(JSC))
-        self.assertTrue(self.switch(start=[JSC]))
+        self.run_controllers([JSC])
         unspawner = self.start('unspawner', JSC)
         wait_until(lambda: self.states() == {JSC: 'stopped'}, 'the controller to stop')
         self.pause()  # it looks for the manager every 3 s of simulated time: not while that goes
@@ -283,10 +279,7 @@ class ManagersTest(ControllersTest):
                 f'joint{number % 2 + 1}_position_controller'
             ]
         self.spawn_robot(parameters=controllers)
-        pid = xmlrpc.client.ServerProxy(rosgraph.Master('/test').lookupNode('/gazebo')).getPid(
-            '/test'
-        )[2]
-        threads = Path(f'/proc/{pid}/task')
+        threads = Path(f'/proc/{process_of()}/task')
         before = {}
         # Twenty controllers, five times; before, the server has not imported all yet.
         for number in range(6):

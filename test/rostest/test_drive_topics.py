@@ -8,7 +8,6 @@ import rospy
 import rostest
 from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
-from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from simulator import SimulatorTest, pose, topics_of, wait_until
@@ -26,16 +25,7 @@ class DriveTest(SimulatorTest):
         xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
         self.assertTrue(self.spawn(name, xml, pose(z=0.02)).success)
         self.assertEqual(topics_of() - before, topics)
-        publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=1)
-        self._connections.append(publisher)
-        wait_until(publisher.get_num_connections, 'a subscriber of /cmd_vel')
-
-        def command(x=0.0, y=0.0, turn=0.0):
-            twist = Twist()
-            twist.linear.x, twist.linear.y, twist.angular.z = x, y, turn
-            publisher.publish(twist)
-
-        return self.collect('/odom', Odometry), command
+        return self.collect('/odom', Odometry), self.driver('/cmd_vel')
 
     def edges(self, messages):
         return {
@@ -70,13 +60,8 @@ class DriveTest(SimulatorTest):
         self.assertTrue(self.spawn('skid4', xml, pose(z=0.02)).success)
         there = topics_of() - before
         self.assertIn('/skid4/wheel_slip/parameter_updates', there)
-        publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=1)
-        self._connections.append(publisher)
-        wait_until(publisher.get_num_connections, 'a subscriber of /cmd_vel')
         odometry = self.collect('/odom', Odometry)
-        twist = Twist()
-        twist.angular.z = 1.0
-        publisher.publish(twist)
+        self.driver('/cmd_vel')(turn=1.0)
         wait_until(lambda: odometry and odometry[-1].twist.twist.angular.z > 0.6, 'it turns')
         self.assertLess(odometry[-1].twist.twist.angular.z, 0.8)
         change = rospy.ServiceProxy('/skid4/wheel_slip/set_parameters', Reconfigure)
@@ -88,7 +73,7 @@ class DriveTest(SimulatorTest):
 
     def test_planar_robot_moves_sideways(self):
         odometry, command = self.spawn_recorded('planar', {'/cmd_vel', '/odom', '/tf'})
-        command(y=0.3)
+        command(left=0.3)
         wait_until(lambda: odometry and odometry[-1].twist.twist.linear.y > 0.25, 'it moves')
         self.assertLess(abs(odometry[-1].twist.twist.linear.x), 0.05)
 

@@ -7,6 +7,7 @@ import signal
 import sys
 import unittest
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import rospy
 import rostest
@@ -25,7 +26,7 @@ from programs import find_program
 from rosbots_msgs.srv import GetFriction
 from sensor_msgs.msg import LaserScan
 from server_process import ServerProcess
-from simulator import pose, proxy, wait_until
+from simulator import page_address, pose, proxy, wait_until
 from terminal import Terminal
 from tf2_msgs.msg import TFMessage
 
@@ -64,23 +65,11 @@ class GzwebTest(unittest.TestCase):
         self.addCleanup(window.close)
         return window
 
-    def address(self, window):
-        found = []
-        wait_until(
-            lambda: (
-                found.append(re.search(r'gzweb: the world is at (\S+)', window.shown()))
-                or found[-1]
-            ),
-            'the address',
-            START,
-        )
-        return found[-1][1]
-
     def test_world_is_shown_and_controlled(self):
         window = self.open('--port', '0')
         with ServerProcess() as server:
             server.wait_ready()
-            address = self.address(window)
+            address = page_address(window.shown, START)
             self.assertEqual(subscribed(), set())  # not even to /clock
             with Browser(address) as browser:
                 browser.wait_until(lambda: '/models/ground_plane/link' in browser.nodes)
@@ -329,7 +318,7 @@ class GzwebTest(unittest.TestCase):
 
     def test_two_browsers_each_have_a_selection_of_their_own(self):
         window = self.open('--port', '0')
-        with ServerProcess() as server, Browser(self.address(window)) as first:
+        with ServerProcess() as server, Browser(page_address(window.shown, START)) as first:
             server.wait_ready()
             for number, name in enumerate(('ball', 'globe', 'marble')):
                 spawned = proxy('spawn_urdf_model', SpawnModel)(
@@ -368,8 +357,8 @@ class GzwebTest(unittest.TestCase):
 
     def test_port_in_use_is_told_in_a_sentence(self):
         first = self.open('--port', '0')
-        port = re.search(r':(\d+)/', self.address(first))[1]
-        second = self.open('--port', port)
+        port = urlsplit(page_address(first.shown, START)).port
+        second = self.open('--port', str(port))
         wait_until(lambda: second.process.poll() is not None, 'the end', START)
         self.assertEqual(second.process.returncode, 1)
         self.assertEqual(

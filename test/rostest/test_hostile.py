@@ -9,10 +9,7 @@ import sys
 import tempfile
 from itertools import pairwise
 from pathlib import Path
-from xmlrpc.client import ServerProxy
 
-import rosgraph
-import rosnode
 import rospy
 import rostest
 from gazebo_msgs.msg import ModelState
@@ -29,7 +26,8 @@ from gazebo_msgs.srv import (
 )
 from geometry_msgs.msg import Twist, Vector3, Wrench
 from nav_msgs.msg import Odometry
-from simulator import BOX, SimulatorTest, pose, proxy, wait_until
+from programs import memory_of
+from simulator import BOX, SimulatorTest, pose, process_of, proxy, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.hostile import cases
@@ -86,8 +84,7 @@ class HostileTest(SimulatorTest):
         self._odometry = self.collect('/odom', Odometry)
         self._spawn_sdf = proxy('spawn_sdf_model', SpawnModel)
         wait_until(self._is_driving, 'motion of the neighbour')
-        address = rosnode.get_api_uri(rosgraph.Master('/test'), '/gazebo')
-        self._pid = ServerProxy(address).getPid('/test')[2]
+        self._pid = process_of()
 
     def _is_driving(self):
         self._drive(FORWARD, TURN)  # repeated: the first may reach a deleted robot
@@ -96,11 +93,6 @@ class HostileTest(SimulatorTest):
         return len(latest) == STEADY and all(
             reading.twist.twist.angular.z > 0.9 * TURN for reading in latest
         )
-
-    def _memory(self):
-        """Return the resident memory of the server [bytes]."""
-        pages = int(Path(f'/proc/{self._pid}/statm').read_text(encoding='ascii').split()[1])
-        return pages * os.sysconf('SC_PAGE_SIZE')
 
     def _processor_time(self):
         """Return the processor time that the server has used [s]."""
@@ -139,7 +131,7 @@ class HostileTest(SimulatorTest):
         return response.success, response.status_message
 
     def test_descriptions(self):
-        before = self._memory()
+        before = memory_of(self._pid)
         with tempfile.TemporaryDirectory() as folder:
             for case in cases():
                 if case.kind == 'world' or not case.wire:
@@ -158,7 +150,7 @@ class HostileTest(SimulatorTest):
                     )
                     if success:
                         self.assertTrue(self.delete('hostile').success)
-        self.assertLess(self._memory() - before, GROWN)
+        self.assertLess(memory_of(self._pid) - before, GROWN)
 
     def test_text_that_is_not_unicode(self):
         with self._neighbour_drives_on():

@@ -28,7 +28,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from sensor_msgs.msg import Imu
 from server_process import ServerProcess
-from simulator import pose, proxy, wait_until
+from simulator import page_address, pose, proxy, wait_until
 from std_msgs.msg import Float64
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
@@ -109,12 +109,7 @@ class HostileNamesTest(unittest.TestCase):
             )
         cls.addClassCleanup(window.wait)
         cls.addClassCleanup(window.kill)
-        said = []
-        wait_until(
-            lambda: said.append(re.search(r'the world is at (\S+)\n', log.read_text())) or said[-1],
-            'the address',
-        )
-        cls.address = said[-1][1]
+        cls.address = page_address(log.read_text)
         cls.listener = Listener()
         cls.addClassCleanup(cls.listener.close)
         here = f'127.0.0.1:{cls.listener.port}'

@@ -34,7 +34,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import staleness_of
 from sensor_msgs.msg import LaserScan
 from server_process import ServerProcess
-from simulator import BOX, GROUND, pose, proxy, wait_until
+from simulator import BOX, GROUND, page_address, pose, proxy, wait_until
 from std_srvs.srv import Empty
 from terminal import Terminal
 
@@ -245,13 +245,7 @@ class ChromiumTest(unittest.TestCase):
         """Start gzweb; return the address of its page."""
         cls.window = window = Terminal('rosrun', 'gazebo_ros', 'gzweb', '--port', port)
         cls.addClassCleanup(window.close)
-        said = []
-        wait_until(
-            lambda: said.append(re.search(r'the world is at (\S+)', window.shown())) or said[-1],
-            'the address',
-            SLOW,
-        )
-        return said[-1][1]
+        return page_address(window.shown, SLOW)
 
     @classmethod
     def open_page(cls):

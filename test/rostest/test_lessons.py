@@ -10,9 +10,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import rosgraph
 import rostest
-from simulator import free_port, wait_until
+from server_process import MasterProcess
+from simulator import wait_until
 from terminal import Terminal
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,9 +46,8 @@ class Reader:
 
     def __init__(self, variables):
         self.folder = Path(tempfile.mkdtemp(prefix='lesson_'))
-        self._port = free_port()
-        self._environment = variables | {'ROS_MASTER_URI': f'http://localhost:{self._port}'}
-        self._master = None
+        self._master = MasterProcess()  # roslaunch waits only 10 s for one of its own
+        self._environment = variables | {'ROS_MASTER_URI': self._master.address}
         self._terminals = []  # each with its step
 
     def follow(self, step):
@@ -65,19 +64,9 @@ class Reader:
         else:
             self._type(step)
 
-    def _start_master(self):
-        """Start a ROS master, for roslaunch waits only 10 s for one of its own."""
-        self._master = subprocess.Popen(
-            ['rosmaster', '--core', '-p', str(self._port)],
-            env=self._environment,
-            stdout=subprocess.DEVNULL,
-        )
-        address = self._environment['ROS_MASTER_URI']
-        wait_until(lambda: rosgraph.is_master_online(address), 'the ROS master', LIMIT)
-
     def _open(self, step):
-        if self._master is None:
-            self._start_master()
+        if not self._terminals:
+            self._master.start()
         terminal = Terminal(
             'bash', '-c', f'exec {step.text}', cwd=self.folder, env=self._environment
         )
@@ -141,27 +130,17 @@ class Reader:
     def end(self):
         """Press Ctrl-C in each terminal, the last one first; return what they have shown."""
         shown = []
-        for step, terminal in reversed(self._terminals):
-            if terminal.process.poll() is None:
-                os.killpg(terminal.process.pid, signal.SIGINT)
-            wait_until(
-                lambda terminal=terminal: terminal.process.poll() is not None,
-                f'exit of {step.text}',
-                LIMIT,
-            )
+        for _, terminal in reversed(self._terminals):
+            terminal.end()
             shown.append(terminal.shown())
         return shown
 
     def leave(self):
         """Kill what still runs, and remove the folder."""
         for _, terminal in self._terminals:
-            if terminal.process.poll() is None:
-                os.killpg(terminal.process.pid, signal.SIGTERM)
-                terminal.process.wait(LIMIT)
+            terminal.end(signal.SIGTERM)
             terminal.close()
-        if self._master is not None:
-            self._master.terminate()
-            self._master.wait(LIMIT)
+        self._master.__exit__()
         shutil.rmtree(self.folder)
 
 

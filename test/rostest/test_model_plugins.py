@@ -8,7 +8,7 @@ from pathlib import Path
 
 import rospy
 import rostest
-from geometry_msgs.msg import TransformStamped, Twist, Wrench
+from geometry_msgs.msg import TransformStamped, Wrench
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from simulator import SimulatorTest, pose, topics_of, wait_until
@@ -49,12 +49,6 @@ class ModelPluginsTest(SimulatorTest):
         self.assertEqual(topics_of() - before, topics)
         self.addCleanup(lambda: self.assertEqual(topics_of(), before))
 
-    def sender(self, topic, message_class):
-        publisher = rospy.Publisher(topic, message_class, queue_size=10)
-        self._connections.append(publisher)
-        wait_until(publisher.get_num_connections, f'a subscriber of {topic}')
-        return publisher.publish
-
     def test_true_poses_and_joint_states_have_gazebos_frames_and_stamps(self):
         self.spawn_recorded(
             'skid4_p3d', {'/cmd_vel', '/odom', '/tf', '/joint_states', '/gt_badframe', *TOLD}
@@ -62,9 +56,7 @@ class ModelPluginsTest(SimulatorTest):
         received = {topic: self.collect(topic, Odometry) for topic in TOLD}
         nothing = self.collect('/gt_badframe', Odometry)
         states = self.collect('/joint_states', JointState)
-        command = Twist()
-        command.linear.x, command.angular.z = 0.4, 0.5
-        self.sender('/cmd_vel', Twist)(command)
+        self.driver('/cmd_vel')(0.4, 0.5)
         heard = len(states)
         wait_until(lambda: len(states) > heard + 40, 'two seconds of joint states')
         for topic, (frame, child, expected) in TOLD.items():
@@ -112,7 +104,7 @@ class ModelPluginsTest(SimulatorTest):
             'arm_ft', {'/joint_states', '/set_joint_trajectory', '/ft_elbow', '/ft_shoulder'}
         )
         states = self.collect('/joint_states', JointState)
-        play = self.sender('/set_joint_trajectory', JointTrajectory)
+        play = self.publisher('/set_joint_trajectory', JointTrajectory).publish
         for frame in ('', 'nope'):  # an error in the log
             play(
                 JointTrajectory(
@@ -145,7 +137,7 @@ class ModelPluginsTest(SimulatorTest):
 
     def test_wrench_acts_until_the_next_one(self):
         self.spawn_recorded('force', {'/force'})
-        push = self.sender('/force', Wrench)
+        push = self.publisher('/force', Wrench).publish
         wrench = Wrench()
         wrench.force.x, wrench.force.z = 5.0, 60.0
         push(wrench)
@@ -160,7 +152,7 @@ class ModelPluginsTest(SimulatorTest):
 
     def test_hand_of_god_follows_a_frame(self):
         self.spawn_recorded('hog', {'/tf', '/tf_static'} - topics_of(), z=0.5)
-        lead = self.sender('/tf', TFMessage)  # before this node reads /tf: it has one reader
+        lead = self.publisher('/tf', TFMessage)  # before this node reads /tf: it has one reader
         transforms = self.collect('/tf', TFMessage)
         edge = TransformStamped()
         edge.header.frame_id, edge.child_frame_id = 'world', 'hog_desired'
@@ -168,7 +160,7 @@ class ModelPluginsTest(SimulatorTest):
         edge.transform.rotation.w = 1.0
         self.assertEqual(self.actual(transforms), [])
         self.assertAlmostEqual(self.model_state('hog', '').pose.position.z, 0.5)
-        lead(TFMessage([edge]))
+        lead.publish(TFMessage([edge]))
         wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'the frame reached')
         wait_until(lambda: has_period(self.actual(transforms), 1), 'transforms of successive steps')
         received = self.actual(transforms)

@@ -9,14 +9,13 @@ import subprocess
 import sys
 import tempfile
 import unittest
-from contextlib import contextmanager
 from pathlib import Path
 
 import debian_rviz
 import readme
 import rostest
 from simulator import BOX, free_port, wait_until
-from terminal import Terminal
+from terminal import Terminal, open_display
 
 sys.path.insert(0, str(readme.ROOT / 'test'))
 from support.article_package import THEIR_LINK, write_article_package
@@ -99,12 +98,11 @@ class Newcomer:
 
 
 class Walk:
-    """The terminals of a user, each with one program; `shown` is their output."""
+    """The terminals of a user by their commands, each with one program."""
 
     def __init__(self, newcomer):
         self._newcomer = newcomer
         self._terminals = {}
-        self.shown = {}
 
     def open(self, command):
         """Open a terminal as in the README, and type a command."""
@@ -113,39 +111,32 @@ class Walk:
         )
         return command
 
+    def commands(self):
+        return list(self._terminals)
+
     def keys(self, command, text):
         self._terminals[command].type(text)
 
     def runs(self, command):
         return self._terminals[command].process.poll() is None
 
-    def wait(self, condition, what):
-        """Wait for a condition, and read all terminals meanwhile: a full one blocks its program."""
-
-        def looked():
-            self.shown |= {
-                command: terminal.shown() for command, terminal in self._terminals.items()
-            }
-            return condition()
-
-        wait_until(looked, what, STEP)
+    def shown(self, command):
+        return self._terminals[command].shown()
 
     def see(self, command, text):
-        self.wait(lambda: text in self.shown[command], f'{text!r} after {command}')
+        wait_until(lambda: text in self.shown(command), f'{text!r} after {command}', STEP)
 
     def end(self, number=signal.SIGINT):
         """Press Ctrl-C in each terminal whose program still runs, the first one last."""
-        for command, terminal in reversed(list(self._terminals.items())):
-            if self.runs(command):
-                os.killpg(terminal.process.pid, number)
-            self.wait(lambda command=command: not self.runs(command), f'exit of {command}')
+        for terminal in reversed(list(self._terminals.values())):
+            terminal.end(number)
 
     def close(self, command):
         self._terminals.pop(command).close()
 
     def leave(self):
         self.end(signal.SIGTERM)
-        for command in list(self._terminals):
+        for command in self.commands():
             self.close(command)
 
 
@@ -154,24 +145,6 @@ def count_lines(shown):
     lines = [line for line in shown.splitlines() if line.strip()]
     again = sum(bool(AGAIN.search(line)) for line in lines)
     return len(lines) - max(0, again - 1)
-
-
-@contextmanager
-def screen():
-    """Start a virtual X server; yield its display name."""
-    reader, writer = os.pipe()
-    server = subprocess.Popen(
-        ['Xvfb', '-displayfd', str(writer), '-screen', '0', '1024x768x24'],
-        pass_fds=[writer],
-        stderr=subprocess.DEVNULL,
-    )
-    try:
-        yield f':{os.read(reader, 16).decode().strip()}'
-    finally:
-        server.terminate()
-        server.wait()
-        os.close(reader)
-        os.close(writer)
 
 
 class OwnPackageTest(unittest.TestCase):
@@ -185,12 +158,14 @@ class OwnPackageTest(unittest.TestCase):
 
     def test_all_nine_steps(self):
         self.addCleanup(self.reader.environment.update, self.reader.environment.copy())
+        self.addCleanup(open_display())
+        self.reader.environment['DISPLAY'] = os.environ['DISPLAY']
         walk = Walk(self.reader)
-        with screen() as self.reader.environment['DISPLAY']:
-            self.addCleanup(walk.leave)
-            self._walk(walk)
-            walk.end()
-        for command, shown in walk.shown.items():
+        self.addCleanup(walk.leave)
+        self._walk(walk)
+        walk.end()
+        for command in walk.commands():
+            shown = walk.shown(command)
             self.assertNotIn(RED, shown, command)
             self.assertLessEqual(count_lines(shown), MOST_LINES, f'{command}:\n{shown[:6000]}')
 
@@ -213,7 +188,7 @@ class OwnPackageTest(unittest.TestCase):
         walk.open(STEPS[3][0])
         walk.see(early, SPAWNED)
         self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
-        walk.wait(lambda: '/gazebo_gui' in type_sourced('rosnode list'), 'the window')
+        wait_until(lambda: '/gazebo_gui' in type_sourced('rosnode list'), 'the window', STEP)
         # 6: the robot is deleted
         self.assertIn('success: True', type_sourced(delete))
         self.assertNotIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
@@ -225,24 +200,22 @@ class OwnPackageTest(unittest.TestCase):
         start, teleop = self._x(), walk.open(f'{STEPS[8][0]} _key_timeout:=0')
         walk.see(teleop, 'currently:')
         walk.keys(teleop, 'i')
-        walk.wait(lambda: self._x() > start + MOVED, 'motion of the robot')
+        wait_until(lambda: self._x() > start + MOVED, 'motion of the robot', STEP)
         walk.keys(teleop, '\x03')
         # any other robot: the simulator is running
         (self.reader.home / 'my_robot.urdf').write_text(BOX, encoding='utf-8')
         self.assertIn(STEPS[3][0], ANY_ROBOT)
         self.assertIn(SPAWNED, type_sourced(ANY_ROBOT.splitlines()[1]))
-        self.assertTrue(walk.runs(view), walk.shown[view])
+        self.assertTrue(walk.runs(view), walk.shown(view))
 
     def _open_rviz(self, walk, starts=debian_rviz.STARTS):
         """Show the user's robot in RViz, before any program of ours runs."""
         view = walk.open(STEPS[2][1])
-        walk.wait(lambda: self._rviz_is_ready() or not walk.runs(view), 'RViz')
+        wait_until(lambda: self._rviz_is_ready() or not walk.runs(view), 'RViz', STEP)
         if walk.runs(view):
             return view
-        walk.wait(
-            lambda: debian_rviz.CRASH.search(walk.shown[view]), f'a crash in {walk.shown[view]}'
-        )
-        self.assertGreater(starts, 1, walk.shown[view])
+        self.assertRegex(walk.shown(view), debian_rviz.CRASH)
+        self.assertGreater(starts, 1, walk.shown(view))
         walk.close(view)
         return self._open_rviz(walk, starts - 1)
 

@@ -31,11 +31,6 @@ class SensorTest(SimulatorTest):
         self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
         self.assertEqual(topics_of() - before, topics)
 
-    def read(self, topic, message_class, count):
-        messages = self.collect(topic, message_class)
-        wait_until(lambda: len(messages) >= count, f'messages on {topic}')
-        return messages
-
     def test_laser_has_its_frame_and_rate(self):
         self.spawn_recorded('laser_nonoise', {'/scan'})
         scans = self.read('/scan', LaserScan, 10)

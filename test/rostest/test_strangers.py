@@ -7,7 +7,6 @@ test/unit/web/test_strangers.py and test/unit/ros_api/window/test_xacro_sandbox.
 
 import math
 import os
-import re
 import subprocess
 import sys
 import tempfile
@@ -19,8 +18,9 @@ from urllib.parse import urlsplit
 import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties
+from programs import memory_of
 from server_process import ServerProcess
-from simulator import proxy, wait_until
+from simulator import page_address, proxy
 from terminal import Terminal
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
@@ -47,12 +47,6 @@ knock.sendall(b'GET / HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nUpgrade: websocket\\r\\
 print(knock.recv(1000).decode())"""
 
 
-def memory(process):
-    """Return the resident memory [bytes]."""
-    status = Path(f'/proc/{process}/status').read_text(encoding='utf-8')
-    return 1024 * int(re.search(r'VmRSS:\s+(\d+)', status)[1])
-
-
 def models():
     return proxy('get_world_properties', GetWorldProperties)().model_names
 
@@ -64,15 +58,7 @@ class StrangersTest(unittest.TestCase):
         cls.server.wait_ready()
         cls.window = Terminal('rosrun', 'gazebo_ros', 'gzweb', '--port', '0')
         cls.addClassCleanup(cls.window.close)
-        said = []
-        wait_until(
-            lambda: (
-                said.append(re.search(r'the world is at (\S+)', cls.window.shown())) or said[-1]
-            ),
-            'the address',
-            SLOW,
-        )
-        cls.address = said[-1][1]
+        cls.address = page_address(cls.window.shown)
         cls.token = cls.address.partition('token=')[2]
 
     def setUp(self):
@@ -141,7 +127,7 @@ class StrangersTest(unittest.TestCase):
 
     def test_5_unfinished_files_do_not_fill_the_memory(self):
         process = self.window.process.pid  # rosrun has become the program
-        before = memory(process)
+        before = memory_of(process)
         for number in range(MANY):
             self.browser.send(
                 {
@@ -169,7 +155,7 @@ class StrangersTest(unittest.TestCase):
         self.browser.choose('Steps', 3)  # is read after all of them
         with Browser(self.address) as other:
             other.wait_until(lambda: other.control('Steps') and other.value('Steps') == 3, SLOW)
-        self.assertLess(memory(process) - before, SPARE)
+        self.assertLess(memory_of(process) - before, SPARE)
 
     def test_6_a_camera_of_no_number_harms_nobody(self):
         self.browser.send({**CAMERA, 'position': [math.nan] * 3})

@@ -10,7 +10,6 @@ import tempfile
 import unittest
 from contextlib import suppress
 from pathlib import Path
-from xmlrpc.client import ServerProxy
 
 import numpy as np
 import rosnode
@@ -20,7 +19,7 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState, SpawnModel
 from PIL import Image
 from programs import find_program
-from simulator import BOX, GROUND, pose, proxy, wait_until
+from simulator import BOX, GROUND, pose, process_of, proxy, wait_until
 from terminal import Terminal, open_display
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
@@ -97,12 +96,6 @@ class WindowTest(unittest.TestCase):
         return {topic for topic, nodes in readers if node in nodes}
 
     @staticmethod
-    def process_of(node):
-        """Return the process id of a node."""
-        uri = rospy.get_master().lookupNode(node)[2]
-        return ServerProxy(uri).getPid('/test')[2]
-
-    @staticmethod
     def rviz_of(terminal):
         """Return the process ids of RViz below a terminal."""
         found = []
@@ -138,7 +131,7 @@ class WindowTest(unittest.TestCase):
         os.kill(first, signal.SIGSEGV)
         self.see(window, CRASHED)
         self.wait_for_rviz(node)
-        self.assertNotEqual(self.process_of(node), first)
+        self.assertNotEqual(process_of(node), first)
 
     def test_second_window_opens_beside_the_first(self):
         self.server()
