@@ -95,6 +95,34 @@ class Statistics:
         }
 
 
+class Records:
+    """What is recorded in a run: the newest reading of each record, and statistics of numbers."""
+
+    def __init__(self, paths: Mapping[str, str]) -> None:
+        """Take the path, by record, of the number in its readings; '' for the reading itself."""
+        self._paths = paths
+        self.newest: dict[str, Any] = dict.fromkeys(paths)
+        self._statistics = {name: Statistics() for name, path in paths.items() if path}
+
+    def take(self, name: str, reading: object) -> None:
+        """Record a reading.
+
+        Raises:
+            ValueError: it has no such number.
+        """
+        path = self._paths[name]
+        self.newest[name] = value_at(reading, path) if path else reading
+        if path:
+            self._statistics[name].add(self.newest[name])
+
+    def columns(self) -> dict[str, float | None]:
+        """Return the statistics of all numbers, by column of a row."""
+        found: dict[str, float | None] = {}
+        for name, statistics in self._statistics.items():
+            found |= statistics.columns(name)
+        return found
+
+
 def check_vectors(message: Mapping[str, Any], fields: tuple[str, ...]) -> list[tuple[float, ...]]:
     """Return the vectors (x, y, z) of a message's fields; what is left out is 0.
 

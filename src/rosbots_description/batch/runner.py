@@ -91,10 +91,7 @@ def _as_file(scenario: Scenario, parameters: Mapping[str, Any] | None) -> Scenar
             raise ScenarioError('a ScenarioFile has its parameters already')
         return scenario
     if isinstance(scenario, Mapping):
-        given = {**scenario}
-        if parameters:
-            given['parameters'] = {**(given.get('parameters') or {}), **parameters}
-        return ScenarioFile(given)
+        return ScenarioFile(scenario, parameters=parameters)
     return ScenarioFile.read(scenario, parameters)
 
 

@@ -15,7 +15,7 @@ from ..sim import Pose, SimError, from_rpy
 from ..sim.core import one_line
 from .conditions import Condition
 from .parameters import Parameters, Run, substitute
-from .records import STATISTICS
+from .records import Records
 from .yaml_file import read_yaml
 
 MIN_PERIOD = 0.001  # [s] a shorter one is a step, which is not much shorter in any world
@@ -122,37 +122,39 @@ class Scenario(Struct, frozen=True, forbid_unknown_fields=True):
                 f'periods of {self.period:g} s; take a longer period'
             )
 
-    @property
-    def columns(self) -> list[str]:
-        """Return the columns of a row that hold what was recorded."""
-        return [
-            f'{name}_{statistic}'
-            for name, record in self.record.items()
-            if record.value
-            for statistic in STATISTICS
-        ]
+    def records(self) -> Records:
+        """Return what takes the readings of a run."""
+        return Records({name: record.value for name, record in self.record.items()})
 
 
 class ScenarioFile:
     """A scenario with its parameters, as it is written; `scenario` gives what one run does."""
 
-    def __init__(self, document: Mapping[str, Any], folder: str | os.PathLike[str] = '.') -> None:
+    def __init__(
+        self,
+        document: Mapping[str, Any],
+        folder: str | os.PathLike[str] = '.',
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
         """Take the content of a YAML file; paths in it are relative to `folder`.
+
+        `parameters` replace those of the same name.
 
         Raises:
             ScenarioError: it is not a scenario; the message says where and why.
         """
         self.folder = os.path.abspath(folder)
         rest = dict(document)
+        given = rest.pop('parameters', None) or {}
+        if parameters and isinstance(given, Mapping):
+            given = {**given, **parameters}
         try:
-            self.parameters = Parameters(
-                rest.pop('parameters', None) or {}, rest.pop('seed', 0), rest.pop('repeat', 1)
-            )
+            self.parameters = Parameters(given, rest.pop('seed', 0), rest.pop('repeat', 1))
         except ValueError as error:
             raise ScenarioError(str(error)) from None
         self._rest = rest
         first = self.scenario(self.parameters.run(0))
-        self.columns = first.columns
+        self.columns = list(first.records().columns())
         taken = {'run', 'seed', 'outcome', 'reason', 'faults', *self.columns} & set(
             self.parameters.names
         )
@@ -177,11 +179,8 @@ class ScenarioFile:
             raise ScenarioError(
                 f'{path} is not a scenario; a scenario is a YAML mapping with at least a duration'
             )
-        given = document.get('parameters') or {}
-        if parameters and isinstance(given, dict):
-            document['parameters'] = {**given, **parameters}
         try:
-            return cls(document, Path(path).resolve().parent)
+            return cls(document, Path(path).resolve().parent, parameters)
         except ScenarioError as error:
             raise ScenarioError(f'{path}: {error}') from None
 

@@ -12,7 +12,7 @@ from ..sim import Fault, Joint, Link, Model, Odometry, SimError, World
 from ..sim.core import MOST_FAULTS, NANOSECONDS, one_line
 from .parameters import Run
 from .policy import Policy, PolicyError, commands_of, in_words, load_policy
-from .records import JointReading, Statistics, value_at
+from .records import JointReading
 from .scenario import RecordEntry, Scenario, ScenarioError, ScenarioFile
 from .topics import Topics
 
@@ -63,12 +63,9 @@ class _Simulation:
     def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
         self._file, self._run, self._scenario = file, run, scenario
         self.faults: list[dict[str, Any]] = []
-        self._statistics = {
-            name: Statistics() for name, record in scenario.record.items() if record.value
-        }
-        self._readings: dict[str, Any] = dict.fromkeys(scenario.record)
+        self._records = scenario.records()
         self._fault: ScenarioError | None = None
-        self._models: dict[str, tuple[Any, RecordEntry]] = {}  # records of what is in the world
+        self._models: dict[str, Model | Link | Joint] = {}  # what is recorded of the world
 
     def columns(self) -> dict[str, float | None]:
         """Simulate; return what was recorded."""
@@ -87,10 +84,7 @@ class _Simulation:
             for name, record in scenario.record.items():
                 self._open(world, name, record)
             self._advance(world)
-        found: dict[str, float | None] = {}
-        for name, statistics in self._statistics.items():
-            found |= statistics.columns(name)
-        return found
+        return self._records.columns()
 
     def _keep(self, fault: Fault) -> None:
         """Keep an error; which warnings come may depend on what this process has read before."""
@@ -102,29 +96,24 @@ class _Simulation:
         with _within(f"record '{name}'"):
             if record.topic:
                 for output in self._topics.outputs(record.topic):
-                    output.connect(partial(self._receive, name, record))
+                    output.connect(partial(self._receive, name))
                 return
             model = world.model(record.model)
             if record.joint:
-                self._models[name] = model.joint(record.joint), record
+                self._models[name] = model.joint(record.joint)
             else:
-                self._models[name] = model.link(record.link) if record.link else model, record
+                self._models[name] = model.link(record.link) if record.link else model
 
-    def _receive(self, name: str, record: RecordEntry, reading: object) -> None:
+    def _receive(self, name: str, reading: object) -> None:
         """Record a reading of a topic; the world would log an exception, and go on."""
         try:
-            self._take(name, record, reading)
+            self._take(name, reading)
         except ScenarioError as error:
             self._fault = self._fault or error
 
-    def _take(self, name: str, record: RecordEntry, reading: object) -> None:
-        """Record a reading."""
-        if not record.value:
-            self._readings[name] = reading
-            return
+    def _take(self, name: str, reading: object) -> None:
         with _within(f"record '{name}'"):
-            value = self._readings[name] = value_at(reading, record.value)
-        self._statistics[name].add(value)
+            self._records.take(name, reading)
 
     def _advance(self, world: World) -> None:
         """Run to the end, with commands and records in between; the policy acts first."""
@@ -138,8 +127,8 @@ class _Simulation:
             if self._fault:
                 raise self._fault
             if step in steps.ticks or step == steps.end:
-                for name, (thing, record) in self._models.items():
-                    self._take(name, record, _state(thing))
+                for name, thing in self._models.items():
+                    self._take(name, _state(thing))
             if step == steps.end:
                 break
             if policy and step in steps.ticks:
@@ -151,7 +140,7 @@ class _Simulation:
 
     def _act(self, policy: Policy, time: float) -> None:
         address = self._scenario.policy
-        for topic, message in commands_of(policy, address, time, self._readings).items():
+        for topic, message in commands_of(policy, address, time, self._records.newest).items():
             with _within(f"the policy '{address}' at {time:g} s, topic '{topic}'"):
                 self._topics.send(topic, message)
 

@@ -35,21 +35,13 @@ class Topics:
         """
         return _found(topic, self._outputs, 'no plugin sends on')
 
-    def plugins(self, topic: str) -> list[ModelPlugin]:
-        """Return the plugins that a topic commands.
-
-        Raises:
-            ValueError: there are none.
-        """
-        return _found(topic, self._commanded, 'no plugin takes commands on')
-
     def send(self, topic: str, message: Mapping[str, Any]) -> None:
         """Command the plugins on a topic: drives by a Twist, `Force` by a Wrench.
 
         Raises:
             ValueError: nothing is commanded by the topic, or the message is not valid.
         """
-        for plugin in self.plugins(topic):
+        for plugin in _found(topic, self._commanded, 'no plugin takes commands on'):
             if isinstance(plugin, Force):
                 plugin.command(*check_vectors(message, _WRENCH))  # type: ignore[arg-type]
             else:

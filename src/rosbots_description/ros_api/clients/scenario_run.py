@@ -23,11 +23,9 @@ from ...batch import (
     Scenario,
     ScenarioError,
     ScenarioFile,
-    Statistics,
     check_vectors,
     commands_of,
     load_policy,
-    value_at,
 )
 from ..messages import read_reading
 from .scenario_services import delete, paused, spawn, true_state
@@ -64,10 +62,7 @@ class _Run:
 
     def __init__(self, file: ScenarioFile, run: Run, scenario: Scenario) -> None:
         self._file, self._run, self._scenario = file, run, scenario
-        self._statistics = {
-            name: Statistics() for name, record in scenario.record.items() if record.value
-        }
-        self._readings: dict[str, Any] = dict.fromkeys(scenario.record)
+        self._records = scenario.records()
         self._publishers: dict[str, rospy.Publisher] = {}
         self._end = contextlib.ExitStack()
         self._fault: ScenarioError | None = None
@@ -84,10 +79,7 @@ class _Run:
                 for command in self._scenario.commands:
                     self._publisher(command.topic)
             self._advance()
-        found: dict[str, float | None] = {}
-        for name, statistics in self._statistics.items():
-            found |= statistics.columns(name)
-        return found
+        return self._records.columns()
 
     def _spawn(self, model: ModelEntry) -> None:
         spawn(model, model.text or self._file.locate(model.file))
@@ -96,7 +88,7 @@ class _Run:
     def _subscribe(self, name: str, record: RecordEntry) -> None:
         def receive(message: genpy.Message) -> None:
             try:
-                self._take(name, record, read_reading(message))
+                self._records.take(name, read_reading(message))
             except ValueError as error:
                 self._fault = ScenarioError(f"record '{name}': {error}")
 
@@ -120,13 +112,6 @@ class _Run:
             _wait(publisher.get_num_connections, f"nothing takes commands on the topic '{topic}'")
             self._publishers[topic] = publisher
         return self._publishers[topic]
-
-    def _take(self, name: str, record: RecordEntry, reading: object) -> None:
-        if not record.value:
-            self._readings[name] = reading
-            return
-        value = self._readings[name] = value_at(reading, record.value)
-        self._statistics[name].add(value)
 
     def _advance(self) -> None:
         """Wait for the end, with commands and records in between; the policy acts first."""
@@ -164,12 +149,12 @@ class _Run:
         for name, record in self._scenario.record.items():
             if record.model:
                 try:
-                    self._take(name, record, true_state(record))
+                    self._records.take(name, true_state(record))
                 except ValueError as error:
                     raise ScenarioError(f"record '{name}': {error}") from None
 
     def _act(self, policy: Policy, now: float) -> None:
-        commands = commands_of(policy, self._scenario.policy, now, self._readings)
+        commands = commands_of(policy, self._scenario.policy, now, self._records.newest)
         if not set(commands) <= set(self._publishers):
             with paused():
                 for topic in commands:
