@@ -1,10 +1,7 @@
 #!/usr/bin/env python3
 """spawn_model waits for a simulator, and ends on Ctrl-C."""
 
-import os
-import select
 import signal
-import subprocess
 import sys
 import time
 import unittest
@@ -12,55 +9,36 @@ import unittest
 import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
-from programs import end, find_program
-from simulator import DEADLINE
+from programs import find_program
+from simulator import DEADLINE, wait_until
+from terminal import Terminal
 
 
 class SpawnModelTest(unittest.TestCase):
     """The test node offers the simulator's two services."""
 
     def setUp(self):
-        self._process = None
-        self._output = ''
         self._requests = []
-        self._services = []
-
-    def tearDown(self):
-        end(self._process)
-        self._process.stdout.close()
-        for service in self._services:
-            service.shutdown()
 
     def _start(self, *arguments):
-        self._process = subprocess.Popen(
-            [find_program('gazebo_ros', 'spawn_model'), '-urdf', '-model', 'box', *arguments],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        )
+        spawn_model = find_program('gazebo_ros', 'spawn_model')
+        self._terminal = Terminal(spawn_model, '-urdf', '-model', 'box', *arguments)
+        self.addCleanup(self._terminal.close)
 
     def _serve(self, name, service_class, answer):
         def handle(request):
             self._requests.append(request)
             return answer(request)
 
-        self._services.append(rospy.Service(name, service_class, handle))
+        self.addCleanup(rospy.Service(name, service_class, handle).shutdown)
 
     def _assert_shows(self, line):
         """Wait until the program has written the line."""
-        end = time.monotonic() + DEADLINE
-        while line not in self._output and time.monotonic() < end:
-            if select.select([self._process.stdout], [], [], 0.1)[0]:
-                piece = os.read(self._process.stdout.fileno(), 4096)
-                if not piece:
-                    break
-                self._output += piece.decode()
-        self.assertIn(line, self._output)
+        wait_until(lambda: line in self._terminal.shown(), line)
 
     def _assert_ends(self, code):
-        self.assertEqual(self._process.wait(DEADLINE), code)
-        self._assert_shows('')
-        self.assertNotIn('Traceback', self._output)
+        self.assertEqual(self._terminal.process.wait(DEADLINE), code)
+        self.assertNotIn('Traceback', self._terminal.shown())
 
     def test_waits_for_the_simulator_and_then_spawns(self):
         self._start('-param', 'robot', '-z', '0.5', '-x', '-1e-1')
@@ -83,20 +61,20 @@ class SpawnModelTest(unittest.TestCase):
     def test_ctrl_c_ends_the_wait(self):
         self._start('-param', 'robot')
         self._assert_shows('Waiting for service /gazebo/spawn_urdf_model')
-        self._process.send_signal(signal.SIGINT)
+        self._terminal.process.send_signal(signal.SIGINT)
         self._assert_ends(130)
 
     def test_ctrl_c_ends_a_hanging_call(self):
         def hang(_):
             end = time.monotonic() + DEADLINE
-            while self._process.poll() is None and time.monotonic() < end:
+            while self._terminal.process.poll() is None and time.monotonic() < end:
                 time.sleep(0.05)
             return SpawnModelResponse(False, 'late')
 
         self._serve('/gazebo/spawn_urdf_model', SpawnModel, hang)
         self._start('-param', 'robot')
         self._assert_shows('Calling service /gazebo/spawn_urdf_model')
-        self._process.send_signal(signal.SIGINT)
+        self._terminal.process.send_signal(signal.SIGINT)
         self._assert_ends(130)
 
     def test_rejection_is_shown_and_exits_with_1(self):
@@ -130,7 +108,7 @@ class SpawnModelTest(unittest.TestCase):
         )
         self._start('-param', 'robot', '-b')
         self._assert_shows('Waiting for shutdown to delete model box')
-        self._process.send_signal(signal.SIGINT)
+        self._terminal.process.send_signal(signal.SIGINT)
         self._assert_ends(0)
         self.assertEqual([request.model_name for request in self._requests], ['box', 'box'])
 
