@@ -2,10 +2,10 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from rosbots_description.sim.core import compose
 from rosbots_description.sim.description import Material, Mesh
@@ -14,7 +14,6 @@ from rosbots_description.sim.meshes import extent, read_mesh
 from rosbots_description.sim.meshes.loader import GREY
 from rosbots_description.sim.resources import ModelSearch
 
-ROOT = Path(__file__).resolve().parents[2]
 MODELS = ROOT / 'src' / 'rosbots_description' / 'models'
 MAX_TRIANGLES = 1100
 ANYWHERE = 0.03  # [m] by which an outline may differ from the documented one

@@ -1,21 +1,9 @@
 """Tests that a change can have touched: found by imports, and all of them when that is unsure."""
 
-import sys
-from pathlib import Path
-
+import changed
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
 SOURCE = 'src/rosbots_description/'
-
-
-@pytest.fixture(scope='module')
-def changed():
-    sys.path.insert(0, str(ROOT / 'tools'))
-    import changed
-
-    yield changed
-    sys.path.remove(str(ROOT / 'tools'))
 
 
 @pytest.mark.parametrize(
@@ -31,37 +19,37 @@ def changed():
         ('ros_api/messages/fields.py', 'test/unit/ros_api/server/test_static_frames.py'),
     ],
 )
-def test_tests_that_import_the_changed_file_run_and_all_rostests(changed, name, case):
+def test_tests_that_import_the_changed_file_run_and_all_rostests(name, case):
     choice = changed.choose([SOURCE + name])
     assert case in choice.cases
     assert choice.rostests is None
 
 
-def test_what_nothing_leads_to_is_left_out_and_counted(changed):
+def test_what_nothing_leads_to_is_left_out_and_counted():
     choice = changed.choose([SOURCE + 'web/gizmo.py', 'README.md'])
     assert 'test/unit/sim/physics/bullet/test_friction_slip_compliance.py' not in choice.cases
     left = len(changed.test_files()) - len(choice.cases)
     assert choice.left_out.startswith(f'{left} of {len(changed.test_files())} files')
 
 
-def test_tests_that_read_the_source_always_run(changed):
+def test_tests_that_read_the_source_always_run():
     choice = changed.choose(['README.md'])
     assert {'test/unit/test_documents.py', 'test/unit/test_architecture.py'} <= set(choice.cases)
     assert choice.rostests == []
 
 
-def test_a_changed_test_runs(changed):
+def test_a_changed_test_runs():
     name = 'test/unit/sim/physics/bullet/test_friction_slip_compliance.py'
     assert name in changed.choose([name]).cases
 
 
-def test_a_program_of_rostests_runs_the_files_that_name_it(changed):
+def test_a_program_of_rostests_runs_the_files_that_name_it():
     choice = changed.choose(['test/rostest/test_frames.py'])
     assert [path.name for path in choice.rostests] == ['frames.test']
     assert changed.choose(['test/rostest/simulator.py']).rostests is None
 
 
-def test_a_lesson_runs_the_rostest_that_follows_it(changed):
+def test_a_lesson_runs_the_rostest_that_follows_it():
     choice = changed.choose(['doc/lessons/two_robots.md'])
     assert [path.name for path in choice.rostests] == ['lessons.test']
 
@@ -70,7 +58,7 @@ def test_a_lesson_runs_the_rostest_that_follows_it(changed):
     'name',
     ['package.xml', 'urdf/rosbots.xacro', 'test/data/hostile/cases.yaml', SOURCE + 'deleted.py'],
 )
-def test_everything_runs_when_unsure(changed, name):
+def test_everything_runs_when_unsure(name):
     choice = changed.choose([name])
     assert (choice.cases, choice.rostests) == (None, None)
     assert name in choice.left_out

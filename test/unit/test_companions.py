@@ -1,12 +1,12 @@
 """The companions work beside a user's own rosbots_description, except that about our robot."""
 
 import re
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from support import ROOT
 
-COMPANIONS = sorted((Path(__file__).resolve().parents[2] / 'companions').iterdir())
+COMPANIONS = sorted((ROOT / 'companions').iterdir())
 ABOUT_OUR_ROBOT = 'rosbots_navigation'
 # References of a file to another package or its Python module.
 ASKING = re.compile(

@@ -1,11 +1,11 @@
 """The launch files of gazebo_ros take the arguments that Gazebo's take, with the same defaults."""
 
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from support import ROOT
 
-LAUNCH = Path(__file__).resolve().parents[2] / 'companions' / 'gazebo_ros' / 'launch'
+LAUNCH = ROOT / 'companions' / 'gazebo_ros' / 'launch'
 
 _COMMON = {
     'paused': 'false',

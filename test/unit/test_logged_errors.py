@@ -1,24 +1,14 @@
 """Rostests fail on errors and tracebacks in their logs, but on those that they expect."""
 
 import re
-import sys
-from pathlib import Path
 
+import logged_errors
 import pytest
 import yaml
+from support import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 TIME = '2026-11-24 06:02:48,519'
 FAULT = 'Traceback (most recent call last):\n  File "a.py", line 1, in f\nValueError: no minimum\n'
-
-
-@pytest.fixture(scope='module')
-def module():
-    sys.path.insert(0, str(ROOT / 'tools'))
-    import logged_errors
-
-    yield logged_errors
-    sys.path.remove(str(ROOT / 'tools'))
 
 
 @pytest.mark.parametrize(
@@ -41,8 +31,8 @@ def module():
         ('', []),
     ],
 )
-def test_errors_and_tracebacks_are_found_but_not_those_of_connections(module, text, found):
-    assert list(module.errors(text.splitlines(keepends=True))) == found
+def test_errors_and_tracebacks_are_found_but_not_those_of_connections(text, found):
+    assert list(logged_errors.errors(text.splitlines(keepends=True))) == found
 
 
 @pytest.mark.parametrize(
@@ -57,10 +47,10 @@ def test_errors_and_tracebacks_are_found_but_not_those_of_connections(module, te
         ({r'^model \[x\]': 'it is absent', 'never': 'perhaps, if late'}, []),
     ],
 )
-def test_what_is_not_expected_or_not_logged_is_told_once(module, tmp_path, expected, said):
+def test_what_is_not_expected_or_not_logged_is_told_once(tmp_path, expected, said):
     log = tmp_path / 'it.log'
     log.write_text(2 * f'[rosout][ERROR] {TIME}: model [x] does not exist\n')
-    assert module.unexpected([log, log], expected) == said
+    assert logged_errors.unexpected([log, log], expected) == said
 
 
 def test_each_expected_error_belongs_to_a_rostest_and_has_a_reason():

@@ -1,10 +1,9 @@
 """./rosbots check names the ROS packages that a robot needs and that are not here."""
 
-from pathlib import Path
-
 import pytest
+from support import ROOT
 
-CHECK = Path(__file__).resolve().parents[2] / 'tools' / 'robot_check'
+CHECK = ROOT / 'tools' / 'robot_check'
 MANIFEST = """<package format="2"><name>rover</name><version>1.0.0</version><description>x
 </description><maintainer email="a@b.example">a</maintainer><license>BSD</license>
 <depend>gazebo_ros</depend>{}</package>"""

@@ -3,14 +3,13 @@
 import subprocess
 import sys
 from collections import Counter
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from rosbots_description.sim.meshes import read_mesh
 
-ROOT = Path(__file__).resolve().parents[2]
 MESHES = ROOT / 'companions' / 'gazebo_plugins' / 'test' / 'multi_robot_scenario' / 'meshes'
 ANYWHERE = 0.001  # [m] by which an extent may differ from the documented one
 MAX_TRIANGLES = 300

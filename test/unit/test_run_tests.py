@@ -8,9 +8,12 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+import repeat_tests
+import results
+import rostests
+import run_tests
 
 HOPELESS = 900.0  # [s, wall]
-ROOT = Path(__file__).resolve().parents[2]
 JUNIT = """<testsuites><testsuite>
 <testcase classname="test.unit.test_robot" name="test_a"/>
 <testcase classname="test.unit.test_robot" name="test_b[x-1]"><failure>Traceback:
@@ -20,30 +23,20 @@ JUNIT = """<testsuites><testsuite>
 
 
 @pytest.fixture(autouse=True)
-def modules(monkeypatch, tmp_path):
-    monkeypatch.syspath_prepend(str(ROOT / 'tools'))
-    for name in ('results', 'rostests', 'run_tests'):
-        monkeypatch.delitem(sys.modules, name, raising=False)
-    import results
-    import rostests
-    import run_tests
-
+def reports(monkeypatch, tmp_path):
     for module in (results, rostests, run_tests):
         monkeypatch.setattr(module, 'REPORTS', tmp_path / 'reports')
     monkeypatch.setattr(run_tests, 'SUMMARY', tmp_path / 'reports' / 'summary.json')
-    return results, rostests, run_tests
 
 
-def test_the_longest_rostests_begin_first_and_none_is_lost(modules):
-    _, rostests, _ = modules
+def test_the_longest_rostests_begin_first_and_none_is_lost():
     every = rostests.choose('')
     ordered = rostests.in_order(every)
     assert sorted(ordered) == every
     assert [path.stem for path in ordered[: len(rostests.LONGEST)]] == list(rostests.LONGEST)
 
 
-def test_failures_are_named_as_pytest_names_them(modules, tmp_path):
-    results, _, run_tests = modules
+def test_failures_are_named_as_pytest_names_them(tmp_path):
     path = tmp_path / 'unit.xml'
     path.write_text(JUNIT)
     report = results.read_report(path)
@@ -54,12 +47,11 @@ def test_failures_are_named_as_pytest_names_them(modules, tmp_path):
     assert case.reason == 'Traceback:\n  line 7'
 
 
-def test_a_report_that_cannot_be_read_is_a_failure(modules, tmp_path):
-    results, _, _ = modules
+def test_a_report_that_cannot_be_read_is_a_failure(tmp_path):
     assert results.read_report(tmp_path / 'none.xml').count.failed == 1
 
 
-def run_with(run_tests, monkeypatch, code, arguments=('lint',)):
+def run_with(monkeypatch, code, arguments=('lint',)):
     command = [sys.executable, '-c', f'print("the cause"); raise SystemExit({code})']
     monkeypatch.setitem(
         run_tests.PHASES, 'lint', lambda _word: run_tests.run_command('lint', 'mypy', command)
@@ -67,9 +59,8 @@ def run_with(run_tests, monkeypatch, code, arguments=('lint',)):
     return run_tests.main([*arguments])
 
 
-def test_a_failure_ends_with_its_command_and_log(modules, monkeypatch, capsys, tmp_path):
-    _, _, run_tests = modules
-    assert run_with(run_tests, monkeypatch, 3) == 1
+def test_a_failure_ends_with_its_command_and_log(monkeypatch, capsys, tmp_path):
+    assert run_with(monkeypatch, 3) == 1
     printed = capsys.readouterr().out
     log = tmp_path / 'reports' / 'lint_mypy.log'
     assert log.read_text() == 'the cause\n'
@@ -82,14 +73,12 @@ def test_a_failure_ends_with_its_command_and_log(modules, monkeypatch, capsys, t
     assert summary['seconds'].keys() == {'lint', 'all'}
 
 
-def test_success_is_exit_code_0(modules, monkeypatch, capsys):
-    _, _, run_tests = modules
-    assert run_with(run_tests, monkeypatch, 0) == 0
+def test_success_is_exit_code_0(monkeypatch, capsys):
+    assert run_with(monkeypatch, 0) == 0
     assert 'repeat' not in capsys.readouterr().out
 
 
-def test_a_failed_test_is_repeated_with_its_seed_and_says_why(modules, capsys):
-    results, _, _ = modules
+def test_a_failed_test_is_repeated_with_its_seed_and_says_why(capsys):
     reason = '\n'.join(f'line {number}' for number in range(99))
     results.say_failures(
         (results.Failure('x', './rosbots test test/rostest/frames.test', Path('log'), reason),), 7
@@ -100,29 +89,19 @@ def test_a_failed_test_is_repeated_with_its_seed_and_says_why(modules, capsys):
     assert 'line 80\n' not in printed
 
 
-def test_unknown_phases_and_files_are_named(modules, capsys):
-    _, _, run_tests = modules
+def test_unknown_phases_and_files_are_named(capsys):
     with pytest.raises(SystemExit):
         run_tests.main(['test/unit/test_none.py'])
     assert "no phase and no file 'test/unit/test_none.py'" in capsys.readouterr().err
 
 
-def test_the_limit_of_a_rostest_only_ends_a_hopeless_wait(modules):
-    _, rostests, _ = modules
+def test_the_limit_of_a_rostest_only_ends_a_hopeless_wait():
     for path in rostests.choose(''):
         for test in ElementTree.parse(path).iter('test'):
             assert float(test.get('time-limit')) >= HOPELESS, path.name
 
 
-@pytest.fixture
-def repeat_tests(modules):
-    sys.modules.pop('repeat_tests', None)
-    import repeat_tests
-
-    return repeat_tests
-
-
-def test_repeated_runs_end_with_a_table(repeat_tests, monkeypatch, capsys):
+def test_repeated_runs_end_with_a_table(monkeypatch, capsys):
     summaries = [
         {'seconds': {'unit': 10.0, 'all': 20.0}, 'failures': ['b']},
         {'seconds': {'unit': 30.0, 'all': 40.0}, 'failures': ['a', 'b']},
@@ -145,7 +124,7 @@ all             20      30      40
 """)
 
 
-def test_repeated_runs_are_made_beside_busy_processes_which_end(repeat_tests, monkeypatch, capsys):
+def test_repeated_runs_are_made_beside_busy_processes_which_end(monkeypatch, capsys):
     from rosbots_description.cli.launched import descendants
 
     seen = []
@@ -162,7 +141,7 @@ def test_repeated_runs_are_made_beside_busy_processes_which_end(repeat_tests, mo
     assert 'no failure in 1 runs' in capsys.readouterr().out
 
 
-def test_a_run_that_ends_early_is_a_failure(repeat_tests, monkeypatch, tmp_path):
+def test_a_run_that_ends_early_is_a_failure(monkeypatch, tmp_path):
     (tmp_path / 'rosbots').write_text('#!/bin/sh\nexit 3\n')
     (tmp_path / 'rosbots').chmod(0o755)
     monkeypatch.setattr(repeat_tests, 'ROOT', tmp_path)
@@ -170,11 +149,10 @@ def test_a_run_that_ends_early_is_a_failure(repeat_tests, monkeypatch, tmp_path)
     assert repeat_tests.run([])['failures'] == ['./rosbots test ended with exit code 3']
 
 
-def test_ctrl_c_reaches_tests_that_run_in_the_background_of_a_shell(modules, monkeypatch):
-    _, _, run_tests = modules
+def test_ctrl_c_reaches_tests_that_run_in_the_background_of_a_shell(monkeypatch):
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         ignored = '__import__("signal").getsignal(2) == __import__("signal").SIG_IGN'
-        assert run_with(run_tests, monkeypatch, ignored) == 0
+        assert run_with(monkeypatch, ignored) == 0
     finally:
         signal.signal(signal.SIGINT, before)
