@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
@@ -49,13 +49,16 @@ def robot_spec() -> ModelSpec:
 
 
 @contextmanager
-def empty_world(tuning: Tuning | None = None) -> Iterator[World]:
+def empty_world(
+    tuning: Tuning | None = None, engine: Callable[..., Engine] = Engine
+) -> Iterator[World]:
     """Yield a world with a ground plane; close it at the end.
 
     Args:
         tuning: engine settings; None for the defaults.
+        engine: makes the engine.
     """
-    world = World(make_engine=partial(Engine, tuning=tuning))
+    world = World(make_engine=partial(engine, tuning=tuning))
     try:
         add_empty_world(world)
         yield world

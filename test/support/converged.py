@@ -6,18 +6,16 @@ ramps depend on it. Results are in test/data/mechanics.json, written by benchmar
 """
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.physics.bullet.engine import Engine
 from rosbots_description.sim.physics.bullet.tuning import Tuning
-from rosbots_description.sim.runtime.empty_world import add_empty_world
 from rosbots_description.sim.runtime.world import World
 
-from . import ROOT
+from . import ROOT, empty_world
 
 FILE = ROOT / 'test' / 'data' / 'mechanics.json'
 PARTS = 10  # steps of the engine in a step of the world
@@ -36,15 +34,9 @@ class ConvergedEngine(Engine):
         super().step(PARTS * steps)
 
 
-@contextmanager
-def converged_world(_: Tuning | None = None) -> Iterator[World]:
-    """Yield a world with a ground plane whose engine solves to convergence."""
-    world = World(make_engine=partial(ConvergedEngine, tuning=CONVERGED))
-    try:
-        add_empty_world(world)
-        yield world
-    finally:
-        world.close()
+def converged_world(_: Tuning | None = None) -> AbstractContextManager[World]:
+    """Return an empty world whose engine solves to convergence."""
+    return empty_world(CONVERGED, ConvergedEngine)
 
 
 @cache
