@@ -52,13 +52,21 @@ def piece(x, y, yaw, length):
     )
 
 
-def follow(*pieces):
-    """Return the task with a line of these pieces."""
-    link = SimpleNamespace(spec=SimpleNamespace(visuals=pieces))
+# From the origin 2 m along x, then 3 m along y.
+LINE = [piece(1.0, 0.0, 0.0, 2.0), piece(2.0, 1.5, math.pi / 2.0, 3.0)]
+
+
+def made_with(kind, link):
+    """Return the task in a world with a model of this link."""
     model = SimpleNamespace(link=lambda _: link)
-    task = made(FollowLine)
+    task = made(kind)
     task._stage.world = SimpleNamespace(model=lambda _: model)
     return task
+
+
+def follow(*pieces):
+    """Return the task with a line of these pieces."""
+    return made_with(FollowLine, SimpleNamespace(spec=SimpleNamespace(visuals=pieces)))
 
 
 @pytest.fixture
@@ -70,6 +78,32 @@ def follow_line():
         piece(2.0, 4.0, math.pi, 4.0),
         piece(0.0, 2.0, -math.pi / 2.0, 4.0),
     )
+
+
+@pytest.mark.parametrize(
+    ('x', 'y', 'way', 'apart'),
+    [
+        (0.5, 0.0, 0.5, 0.0),
+        (0.5, 0.3, 0.5, 0.3),
+        (0.5, -0.3, 0.5, 0.3),
+        (1.9, 0.0, 1.9, 0.0),
+        (-1.0, 0.0, 0.0, 1.0),
+        (2.0, 2.9, 4.9, 0.0),
+        (1.6, 1.0, 3.0, 0.4),
+        (2.3, 2.0, 4.0, 0.3),
+        (2.0, 4.0, 5.0, 1.0),
+        (2.0, -0.5, 2.0, 0.5),
+        (3.0, 4.0, 5.0, math.sqrt(2.0)),
+    ],
+)
+def test_nearest_point_is_on_the_nearest_piece_not_beyond_its_end(x, y, way, apart):
+    assert follow(*LINE)._line.nearest(x, y) == pytest.approx((way, apart))
+
+
+def test_line_is_as_long_as_its_pieces_and_has_their_places():
+    line = follow(*LINE)._line
+    assert (line.length, line.pieces) == (5.0, 2)
+    assert line.place(1) == pytest.approx((2.0, 1.5, math.pi / 2.0))
 
 
 def test_way_along_a_closed_line_is_rewarded_across_its_end_and_costs_backwards(follow_line):
@@ -155,10 +189,7 @@ def test_each_square_of_half_a_metre_is_rewarded_once():
 
 
 def test_maze_rewards_what_the_way_has_become_shorter_and_10_outside():
-    link = SimpleNamespace(collisions={})
-    model = SimpleNamespace(link=lambda _: link)
-    task = made(Maze)
-    task._stage.world = SimpleNamespace(model=lambda _: model)
+    task = made_with(Maze, SimpleNamespace(collisions={}))
     task.begin({})
     assert task.pose[:2] == (0.0, 0.0)
     assert -math.pi <= task.pose[2] < math.pi
