@@ -1,7 +1,7 @@
 """Find the way out of the maze."""
 
-import heapq
 import math
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Any, ClassVar
@@ -35,15 +35,14 @@ class Distances:
             if isinstance(one.spec.geometry, Box)
             for x, y, _ in [one.pose.position]
         ]
-        goal = _cell(*GOAL)
-        self._ways: dict[Cell, float] = {goal: 0.0}
-        queue = [(0.0, goal)]
+        self._ways: dict[Cell, float] = {_cell(*GOAL): 0.0}
+        queue = deque(self._ways)  # the nearest cells first
         while queue:
-            way, cell = heapq.heappop(queue)
+            cell = queue.popleft()
             for near in self._neighbours(cell):
                 if near not in self._ways:
-                    self._ways[near] = way + _CELL
-                    heapq.heappush(queue, (way + _CELL, near))
+                    self._ways[near] = self._ways[cell] + _CELL
+                    queue.append(near)
 
     def of(self, x: float, y: float) -> float:
         """Return the way from a point to the goal [m]; inf where there is none."""
