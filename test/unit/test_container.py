@@ -6,8 +6,6 @@ import yaml
 from support import ROOT
 from support.programs import bash
 
-CONTAINER = (ROOT / 'Containerfile').read_text(encoding='utf-8')
-
 
 def instructions():
     """Return the instructions of the Containerfile, as the bare machine reads them."""
