@@ -27,6 +27,7 @@ _MAX_SLOW_CHECKS = 100  # slow checks in a row that end the correction of a body
 _ALLOWED_GROWTH = 0.01
 # What changes of a fast body from step to step.
 _STATE = 'peak_kinetic', 'energy_limit', 'is_airborne', 'total_energy', 'slow_checks'
+_NEXT, _LAST = np.array((1, 2, 0)), np.array((2, 0, 1))  # axes after and before x, y, z
 
 
 class FastBodies:
@@ -145,8 +146,9 @@ class _FastBody:
         self._base = bool(base) and not masses.is_fixed
         parts = (base if self._base else []) + links
         self._indices = [part.link for part in links]
-        self._mass = np.array([part.mass for part in parts])
-        self._weight = np.array([part.mass * part.has_weight for part in parts])
+        self._mass = np.array([[part.mass] for part in parts])
+        self._whole_mass = _sum(self._mass)
+        self._weight = np.array([[part.mass * part.has_weight] for part in parts])
         self._moments = np.array([part.moments for part in parts])
         self.peak_kinetic = 0.0  # greatest kinetic energy so far [J]
         self.energy_limit: float | None = None  # [J]; None: set after the next step
@@ -202,16 +204,14 @@ class _FastBody:
         places, turns, linear, angular = (np.array(column) for column in zip(*rows, strict=True))
         turning = _rotated_back(turns, angular)
         middle = places - 0.5 * step_size * linear
-        energy = -float((self._weight[:, None] * middle * gravity).sum())
+        energy = -_sum(self._weight * middle * gravity)
         drift = np.zeros(3)
         if not self._all.is_fixed:
-            whole = self._mass.sum()
-            drift = (self._mass[:, None] * linear).sum(axis=0) / whole
-            energy += 0.5 * whole * float((drift * drift).sum())
+            drift = np.add.reduce(self._mass * linear) / self._whole_mass
+            energy += 0.5 * self._whole_mass * _sum(drift * drift)
         linear = linear - drift
-        kinetic = 0.5 * float(
-            (self._mass[:, None] * linear * linear).sum()
-            + (self._moments * turning * turning).sum()
+        kinetic = 0.5 * (
+            _sum(self._mass * linear * linear) + _sum(self._moments * turning * turning)
         )
         own = kinetic + self._spring_energy(step_size)
         return energy + own, own, kinetic, drift
@@ -294,5 +294,10 @@ def _rotated_back(turns: FloatArray, vectors: FloatArray) -> FloatArray:
 
 def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
     """Return the cross products of vectors (n, 3), to the last bit as numpy's, which is slow."""
-    a, b = one[:, (1, 2, 0)], other[:, (2, 0, 1)]
-    return a * b - one[:, (2, 0, 1)] * other[:, (1, 2, 0)]
+    a, b = one.take(_NEXT, 1), other.take(_LAST, 1)
+    return a * b - one.take(_LAST, 1) * other.take(_NEXT, 1)
+
+
+def _sum(numbers: FloatArray) -> float:
+    """Return the sum of all numbers, as the method `sum` to the last bit, in half the time."""
+    return float(np.add.reduce(numbers, None))
