@@ -102,9 +102,9 @@ def share_kept(spec, velocity, seconds, **settings):
     ],
 )
 def test_spinning_body_keeps_its_energy(moments, com, speed, mu):
-    least, most = share_kept(body(moments, com, mu), (0.01 * speed, speed, 0.03 * speed), 10.0)
-    assert least > 0.97
-    assert most < 1.02
+    least, most = share_kept(body(moments, com, mu), (0.01 * speed, speed, 0.03 * speed), 4.0)
+    assert least > 0.988
+    assert most < 1.014
 
 
 @pytest.mark.parametrize('speed', [300.0, 3e3, 1e5])
@@ -121,9 +121,9 @@ def test_energy_is_kept_with_longer_steps():
 
 @pytest.mark.parametrize('velocity', [(60.0, 0.0, 1.0), (7.0, -15.0, 10.0)])
 def test_tumbling_robot_keeps_its_energy(velocity):
-    least, most = share_kept(robot_spec(), velocity, 10.0)
-    assert least > 0.9
-    assert most < 1.02
+    least, most = share_kept(robot_spec(), velocity, 4.0)
+    assert least > 0.96
+    assert most < 1.014
 
 
 def swing(spec, seconds):
@@ -143,17 +143,17 @@ def swing(spec, seconds):
 
 @pytest.mark.parametrize(('count', 'length'), [(2, 0.2), (2, 1.0), (4, 0.5)])
 def test_pendulum_of_several_rods_gains_no_energy_and_keeps_swinging(count, length):
-    changes, _ = swing(chain(count, length), 6.0)
+    changes, _ = swing(chain(count, length), 3.0)
     there = GRAVITY * length * count**2 / 2.0  # greatest loss of potential energy [J]
     assert max(changes) < 0.02 * there
-    assert min(changes) > -0.35 * there
+    assert min(changes) > -0.17 * there
 
 
 @pytest.mark.parametrize(
     ('count', 'length', 'mass'), [(30, 0.1, 1.0), (40, 0.2, 0.1), (50, 0.1, 5.0)]
 )
 def test_released_long_chain_gains_no_energy(count, length, mass):
-    changes, fastest = swing(chain(count, length, mass), 3.0)
+    changes, fastest = swing(chain(count, length, mass), 2.0)
     assert max(changes) < 0.02 * GRAVITY * mass * length * count**2 / 2.0
     assert fastest < 15.0 * math.sqrt(GRAVITY * count * length)
 
@@ -170,7 +170,7 @@ def test_thrown_chain_gains_no_speed(world):
     model = world.spawn(ModelSpec('chain', links, spec.joints), 'chain', Pose((0, 0, 2.0)))
     model.set_twist(Twist((0.0, 0.0, 3.0), (1.0, 8.0, 0.0)))
     start = energies(model)[0]
-    for _ in range(40):
+    for _ in range(20):
         world.run(100)
         assert energies(model)[0] < 1.02 * start
 
