@@ -10,7 +10,7 @@ import logging
 import sys
 
 from support.converged import FILE, converged_world
-from support.motion import MOTORED, drive_as_recorded, measure
+from support.motion import MOTORED, drive_as_recorded, measure, samples_at
 from support.recorded import load
 
 DIGITS = 6
@@ -24,7 +24,7 @@ def main(names: list[str]) -> int:
         for command, recorded in load(name)['drives'].items():
             samples = drive_as_recorded(name, command, make_world=converged_world)
             quantities = measure(samples, recorded['seconds'])
-            trace = [samples[round(1000 * time)][:4] for time, *_ in recorded['trace']]
+            trace = [sample[:4] for sample in samples_at(samples, recorded['trace'])]
             found[f'{name} {command}'] = {
                 'quantities': {key: round(value, DIGITS) for key, value in quantities.items()},
                 'trace': [[round(value, DIGITS) for value in row] for row in trace],

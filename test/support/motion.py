@@ -1,7 +1,7 @@
 """Repeat drives recorded in Gazebo, and measure the motion in the same way."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import NamedTuple
 
@@ -89,8 +89,14 @@ def drive(
     duration: float,
     tuning: Tuning | None = None,
     make_world: MakeWorld = empty_world,
+    sampled: Collection[int] = (),
 ) -> list[Sample]:
-    """Return the motion after each step, from the first command on."""
+    """Return the motion from the first command on.
+
+    Args:
+        sampled: the milliseconds after which it is noted, from 0 on in order; by default each. A
+            step takes a third of the time if its motion is not noted, and moves to the same bit.
+    """
     with make_world(tuning) as world:
         model = world.spawn(one.spec, 'robot', Pose((0.0, 0.0, one.spawn_z)))
         latest = [Pose(), (0.0, 0.0)]
@@ -102,13 +108,16 @@ def drive(
             next(iter(model.plugins.values())).odometry.connect(on_odometry)
         world.run(one.settled)
         odometry_start = latest[0]
-        start, yaw, samples, waiting = None, 0.0, [], list(commands)
-        for k in range(round(duration * 1000) + 1):
-            while waiting and k >= round(1000 * waiting[0][0]):
+        start, yaw, samples, waiting, made = None, 0.0, [], list(commands), 0
+        for k in sampled or range(round(duration * 1000) + 1):
+            while waiting and k >= (at := round(1000 * waiting[0][0])):
+                world.run(at - made)
+                made = at
                 _, x, y, w = waiting.pop(0)
                 for plugin in model.plugins.values():
                     plugin.command(x, w, y)
-            world.run(1)
+            world.run(k + 1 - made)
+            made = k + 1
             pose, ((vx, vy, _), (_, _, turning)) = model.state()
             start = start or pose
             moved, heading = relative(pose, start), yaw_of(pose.orientation)
@@ -133,18 +142,34 @@ def drive(
 
 
 def drive_as_recorded(
-    name: str, command: str, tuning: Tuning | None = None, make_world: MakeWorld = empty_world
+    name: str,
+    command: str,
+    tuning: Tuning | None = None,
+    make_world: MakeWorld = empty_world,
+    each_step: bool = False,
 ) -> list[Sample]:
-    """Return the motion of a recorded robot for a command, until it is at rest."""
+    """Return the motion of a recorded robot for a command, until it is at rest.
+
+    It is noted at the rows and in the trace of the recording, or after each step.
+    """
     data = load(name)['drives'][command]
     seconds = data['seconds']
     commands = [(0.0, *data['command']), (seconds, 0.0, 0.0, 0.0)]
-    return drive(robot(name), commands, seconds + REST, tuning, make_world)
+    rows = range(0, round(1000 * (seconds + REST)) + 1, ROW)
+    traced = (round(1000 * time) for time, *_ in data['trace'])
+    sampled = () if each_step else sorted({*rows, *traced})
+    return drive(robot(name), commands, seconds + REST, tuning, make_world, sampled)
+
+
+def samples_at(samples: Sequence[Sample], trace: Sequence[Sequence[float]]) -> list[Sample]:
+    """Return the samples at the times of a recorded trace."""
+    by_step = {round(1000 * sample.time): sample for sample in samples}
+    return [by_step[round(1000 * time)] for time, *_ in trace]
 
 
 def measure(samples: Sequence[Sample], seconds: float) -> dict[str, float]:
     """Return the quantities of a recording for a command that ended after `seconds`."""
-    rows = samples[::ROW]
+    rows = [sample for sample in samples if round(1000 * sample.time) % ROW == 0]
     steady = [row for row in rows if STEADY_FROM <= row.time < seconds]
     end, rest = next(row for row in rows if row.time >= seconds), rows[-1]
 
@@ -248,8 +273,10 @@ def _compare_paths(
     """Yield the largest differences of path and heading."""
     apart = turned = 0.0
     solved = mechanics().get(scene, {}).get('trace', data['trace'])
-    for (time, x, y, yaw), (_, *place, heading) in zip(data['trace'], solved, strict=True):
-        sample = samples[round(1000 * time)]
+    traced = samples_at(samples, data['trace'])
+    for (_, x, y, yaw), (_, *place, heading), sample in zip(
+        data['trace'], solved, traced, strict=True
+    ):
         apart = max(apart, _beside((sample.x, sample.y), (x, y), place))
         turned = max(turned, min(yaw, heading) - sample.yaw, sample.yaw - max(yaw, heading))
     reach = max(math.hypot(x, y) for _, x, y, _ in data['trace'])
@@ -274,7 +301,8 @@ def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:
     idle = load(name).get('idle')
     if idle is None:
         return []
-    samples = drive(robot(name), [], IDLE, tuning)
+    rows = range(0, round(1000 * IDLE) + 1, ROW)
+    samples = drive(robot(name), [], IDLE, tuning, sampled=rows)
     last, scene = samples[-1], f'{name} idle 20 s'
     way = math.hypot(idle['dx'], idle['dy'])
     most = max(CREEP, way)  # the tricycle coasts: its plugin commands the measured speed

@@ -27,6 +27,7 @@ RESIDUAL_SPEED = 1e-3  # [m/s or rad/s] of a robot at rest; in Gazebo it is 0.00
 # Speeds of the article's robot without slip, relative to the command: its wheels measure 0.46 m and
 # stand 0.88 m apart, its plugin has 0.52 m and 1.1 m.
 ROLLING, TURNING = 0.46 / 0.52, 0.46 / 0.52 * 1.1 / 0.88  # 0.885, 1.106
+RAMPED = ('article', 'straight_v0.5')  # whose times of passing a speed are compared to a step
 DRIVES = [(name, command) for name in ROBOTS for command in load(name)['drives']]
 
 # Differences above the tolerances of support/motion.py: permitted share, and reason.
@@ -49,7 +50,11 @@ KNOWN = (
     Known('tricycle steer_v0.5_a0.5', 't90_v', 2.0, NOISY),
 )  # fmt: skip
 
-samples = cache(drive_as_recorded)
+
+@cache
+def samples(name, command):
+    each_step = (name, command) == RAMPED
+    return drive_as_recorded(name, command, each_step=each_step)
 
 
 def test_each_exception_names_a_recorded_drive_and_has_a_number():
@@ -91,8 +96,8 @@ def test_robot_without_commands_does_not_move(name):
 
 
 def test_acceleration_and_braking_follow_gazebos_ramp():
-    article, straight = load('article'), samples('article', 'straight_v0.5')
-    ramp, end = article['ramp'], article['drives']['straight_v0.5']['seconds']
+    (name, command), straight = RAMPED, samples(*RAMPED)
+    ramp, end = load(name)['ramp'], load(name)['drives'][command]['seconds']
     delays = ramp_delays(straight, ramp['start'], 0.0, rising=True)
     delays += ramp_delays(straight, ramp['stop'], end, rising=False)
     assert max(map(abs, delays)) <= RAMP_TOLERANCE
