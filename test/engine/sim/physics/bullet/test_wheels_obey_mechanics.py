@@ -43,6 +43,7 @@ from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.outputs import FrameTransform, JointStates, Odometry
 
 CONVERGED = Tuning(iterations=3.0)  # 150
+SPEED_REACHED = 750  # steps after which a slow robot moves at a steady speed, the ramp included
 LIGHT = castered(1.0, 0.2, casters=1)
 MIDDLE = castered(casters=1)
 HEAVY = castered(50.0, 1.0, casters=2, mu=0.1)
@@ -90,10 +91,10 @@ def test_robot_driving_across_a_slope_does_not_slide_down(world, spec, degrees, 
     model = placed(world, spec, frame)
     before = within(frame, model).position
     command(model, speed, 0.0)
-    world.run(3000)
+    world.run(2000)
     after = within(frame, model).position
-    assert abs(after[1] - before[1]) < 0.01 * 3.0
-    assert after[0] - before[0] > 0.7 * 3.0 * speed - 0.01
+    assert abs(after[1] - before[1]) < 0.01 * 2.0
+    assert after[0] - before[0] > 0.7 * 2.0 * speed - 0.01
 
 
 @pytest.mark.parametrize(
@@ -140,23 +141,23 @@ def test_slow_robot_climbs_a_ramp_as_commanded_without_rolling_back(world, spec,
     frame = tilted_floor(world, pitch=-math.radians(degrees))
     model = placed(world, spec, frame)
     command(model, speed, 0.0)
-    world.run(2000)
+    world.run(1000)
     ways = []
-    for _ in range(40):
+    for _ in range(20):
         ways.append(within(frame, model).position[0])
         world.run(100)
     assert min(b - a for a, b in itertools.pairwise(ways)) > 0.0
-    assert (ways[-1] - ways[0]) / 3.9 == pytest.approx(speed, rel=0.05)
+    assert (ways[-1] - ways[0]) / 1.9 == pytest.approx(speed, rel=0.05)
 
 
 @pytest.mark.parametrize('spec', [LIGHT, MIDDLE, HEAVY], ids=['1 kg', '5 kg', '50 kg'])
 def test_slow_commands_are_followed_on_level_ground(world, spec):
     model = placed(world, spec)
     command(model, 0.01, 0.0)
-    world.run(2000)
+    world.run(SPEED_REACHED)
     before = model.pose.position
-    world.run(4000)
-    assert math.dist(model.pose.position, before) / 4.0 == pytest.approx(0.01, rel=0.05)
+    world.run(1500)
+    assert math.dist(model.pose.position, before) / 1.5 == pytest.approx(0.01, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -174,8 +175,8 @@ def test_slow_turns_are_followed(world, spec, rate):
     """Within what a wheel makes of it that turns about one of its outer crests: b / 2R, 6 %."""
     model = placed(world, spec)
     command(model, 0.0, rate)
-    world.run(3000)
-    assert turned(model, world, 3000) / 3.0 == pytest.approx(rate, rel=0.065)
+    world.run(SPEED_REACHED)
+    assert turned(model, world, 1500) / 1.5 == pytest.approx(rate, rel=0.065)
 
 
 def share_turned(size, mu):
@@ -212,8 +213,8 @@ def test_yaw_rate_with_broad_wheels_and_casters_is_that_of_coulomb(mass, size, m
         with empty_world(tuning) as world:
             model = placed(world, castered(mass, size, casters=2, mu=mu), yaw=yaw)
             command(model, 0.0, rate)
-            world.run(3000)
-            share = turned(model, world, 3000) / 3.0 / rate
+            world.run(SPEED_REACHED)
+            share = turned(model, world, 1500) / 1.5 / rate
         if tuning:
             assert share == pytest.approx(share_turned(size, mu), rel=0.02)
         else:
@@ -319,10 +320,10 @@ def test_robot_on_a_moving_platform_moves_with_it(world, spec, joint, moves, spe
     for i in range(100):
         bed.joint('j').set_motor(moves * (i + 1) / 100.0, 1e6)
         world.run(10)
-    world.run(4000)
-    expected = compose(before, Pose((5.0 * speed, 0.0, 0.0)))
+    world.run(2000)
+    expected = compose(before, Pose((3.0 * speed, 0.0, 0.0)))
     after = within(carrier.pose, model)
-    assert math.dist(after.position[:2], expected.position[:2]) < 0.01
+    assert math.dist(after.position[:2], expected.position[:2]) < 0.006
 
 
 class Touch(NamedTuple):
@@ -426,8 +427,8 @@ def test_a_robot_on_soft_wheels_drives_straight(world, spec, kp, heading):
     world.run(500)
     before = yaw_of(model.pose.orientation)
     command(model, 0.3, 0.0)
-    world.run(6500)
-    assert yaw_of(model.pose.orientation) == pytest.approx(before, abs=0.02)
+    world.run(3250)
+    assert yaw_of(model.pose.orientation) == pytest.approx(before, abs=0.01)
 
 
 def on_light_wheels(mass, wheel_mass, size):
@@ -478,7 +479,7 @@ def test_robot_spawned_in_the_floor_rises_without_a_jump(world, spec, sunk, plug
     model = world.spawn(
         spec if plugins else replace(spec, plugins=()), 'robot', Pose((0.0, 0.0, rest - sunk))
     )
-    for _ in range(2000):
+    for _ in range(1250):
         world.run(2)
         pose, twist = model.state()
         assert twist.linear[2] <= 1.0
@@ -541,8 +542,8 @@ def burger(mu, lean):
 def test_slippery_wheels_turn_a_robot_on_the_spot_as_commanded(world, mu, lean, turning):
     model = placed(world, burger(mu, lean))
     command(model, 0.0, turning)
-    world.run(1500)
-    assert turned(model, world, 3000) / 3.0 == pytest.approx(turning, rel=0.02)
+    world.run(SPEED_REACHED)
+    assert turned(model, world, 1500) / 1.5 == pytest.approx(turning, rel=0.02)
 
 
 def skid_steer(kp, flipped=False):
@@ -569,7 +570,7 @@ def skid_steer(kp, flipped=False):
 @pytest.mark.parametrize(('kp', 'turning'), [(1e6, 1.0), (1e6, -1.0), (1e12, 1.0)])
 def test_four_wheels_turn_a_robot_as_in_gazebo(world, kp, turning):
     model = world.spawn(skid_steer(kp), 'robot', Pose((0.0, 0.0, 0.131)))
-    world.run(2000)
+    world.run(500)
     command(model, 0.0, turning)
     world.run(1000)
     assert turned(model, world, 4000) / 4.0 == pytest.approx(0.684 * turning, rel=0.05)
@@ -625,8 +626,14 @@ def turning_by_a_pyramid(heading):
     return low
 
 
-@pytest.mark.parametrize('degrees', [0, 10, 20, 30, 45, 60, 75, 105, -60])
-@pytest.mark.parametrize('turning', [1.0, -0.5])
+@pytest.mark.parametrize(
+    ('degrees', 'turning'),
+    [
+        *((degrees, 1.0) for degrees in (0, 10, 20, 30, 45, 60, 75, 105, -60)),
+        # At -w it is at the mirrored heading, a right angle less the heading.
+        *((degrees, -0.5) for degrees in (0, 20, 45, 105)),
+    ],
+)
 def test_long_skid_steer_turns_as_the_friction_pyramid_lets_it(world, degrees, turning):
     model = placed(world, long_skid_steer(0.3), yaw=math.radians(degrees))
     command(model, 0.0, turning)
@@ -650,7 +657,7 @@ def test_long_skid_steer_with_much_grip_rattles_and_turns_no_faster(world, mu):
 
 def test_four_wheels_drive_an_arc_as_in_gazebo(world):
     model = world.spawn(skid_steer(1e6), 'robot', Pose((0.0, 0.0, 0.131)))
-    world.run(2000)
+    world.run(500)
     command(model, 0.5, 0.5)
     assert turned(model, world, 5000) == pytest.approx(1.600, rel=0.06)  # Gazebo's at 5 s
     assert forward_speed(model) == pytest.approx(0.501, rel=0.03)
@@ -669,9 +676,9 @@ def test_swapped_joints_drive_equally_straight(spec):
             model = world.spawn(one, 'robot', SPAWN_POSE)
             world.run(SETTLED)
             command(model, 0.3, 0.0)
-            world.run(4000)
+            world.run(2000)
             yaws.append(yaw_of(model.pose.orientation))
-    assert yaws[0] == pytest.approx(yaws[1], abs=1e-3)
+    assert yaws[0] == pytest.approx(yaws[1], abs=5e-4)
 
 
 def axle_angle(transform):
