@@ -28,7 +28,7 @@ DRIVE_PLUGIN = (
     '</plugin></gazebo>'
 )
 
-Scene = Callable[[Tuning | None], float]
+Scene = Callable[..., float]  # of a Tuning, by default none; a veer takes seconds, too
 
 
 def link(name: str, shape: str, mass: float, inertia: tuple[float, float, float]) -> str:
@@ -190,13 +190,13 @@ def heading_error(spec: ModelSpec) -> Scene:
 
 
 def veer(spec: ModelSpec, speed: float = SPEED) -> Scene:
-    """Return a scene: largest heading drift in a straight drive of 20 s [rad]."""
+    """Return a scene: largest heading drift in a straight drive, by default of 20 s [rad]."""
 
-    def turned(yaw: float, tuning: Tuning | None) -> float:
+    def turned(yaw: float, tuning: Tuning | None, seconds: int) -> float:
         with empty_world(tuning) as world:
-            return abs(yaw_of(drive(world, spec, 20, yaw, speed).pose.orientation) - yaw)
+            return abs(yaw_of(drive(world, spec, seconds, yaw, speed).pose.orientation) - yaw)
 
-    return lambda tuning=None: max(turned(yaw, tuning) for yaw in HEADINGS)
+    return lambda tuning=None, seconds=20: max(turned(yaw, tuning, seconds) for yaw in HEADINGS)
 
 
 def mirrored(spec: ModelSpec) -> ModelSpec:
