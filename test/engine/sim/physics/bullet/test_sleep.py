@@ -13,7 +13,7 @@ from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.runtime.properties import set_friction
 
 AWAKE = Tuning(rest=math.inf)
-ASLEEP = 2000  # steps after which all models here sleep that rest
+ASLEEP = 1500  # steps after which all models here sleep that rest
 CUBE = urdf_spec(box('link', (0.2, 0.2, 0.2), 1.0))
 POST = replace(urdf_spec(box('link', (0.1, 0.1, 0.4), 1.0)), static=True)
 PLANK = urdf_spec(box('link', (1.0, 0.3, 0.1), 2.0))
@@ -262,9 +262,9 @@ def test_a_stack_topples_exactly_when_its_support_goes(remove):
             world.spawn(PLANK, 'plank', Pose((0.0, 0.0, 0.45)))
             for k in range(3):
                 world.spawn(CUBE, f'cube{k}', Pose((0.1, 0.0, 0.6 + 0.2 * k)))
-            world.run(ASLEEP)
+            world.run(2000)
             before = states(world)
-            world.run(ASLEEP)
+            world.run(2000)
             assert (states(world) == before) == (tuning is not AWAKE), 'it sleeps'
             remove(world)
             top, steps = world.models['cube2'], 0

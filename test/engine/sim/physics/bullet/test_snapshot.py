@@ -44,7 +44,7 @@ def states(world):
     ]
 
 
-def go_on(world, steps=1000):
+def go_on(world, steps=600):
     found = []
     for k in range(steps // 20):
         if k == 10:
