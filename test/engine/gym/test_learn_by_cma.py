@@ -22,7 +22,7 @@ def learn(monkeypatch, tmp_path):
 
     def run(name, processes):
         policy, curve = tmp_path / f'{name}.json', tmp_path / f'{name}.png'
-        options = '--generations', '2', '--processes', str(processes), '--curve', str(curve)
+        options = '--generations', '1', '--processes', str(processes), '--curve', str(curve)
         monkeypatch.setattr(sys, 'argv', ['learn_by_cma.py', str(policy), *options])
         learn_by_cma.main()
         assert curve.stat().st_size > 1000
@@ -36,7 +36,7 @@ def learn(monkeypatch, tmp_path):
 def test_the_same_policy_is_learnt_by_any_number_of_processes(learn, capsys):
     layers = learn('one', 1)
     told = capsys.readouterr().out.splitlines()
-    assert len(told) == 3  # a line for each generation, and one for the test
+    assert len(told) == 2  # a line for the generation, and one for the test
     assert told[-1].endswith(' of 2 reach the goal')
     assert learn('two', 2) == layers
     node = runpy.run_path(str(SCRIPTS / 'follow_policy.py'))

@@ -36,6 +36,12 @@ class Mortal(SimEnv):
         return 1.0, self.step_count == 7
 
 
+class Idle(gymnasium.Env):
+    """Without a world."""
+
+    observation_space = action_space = gymnasium.spaces.Box(-1.0, 1.0, (1,))
+
+
 def actions(envs, count):
     """Return the same random actions every time."""
     random = np.random.default_rng(3)
@@ -75,7 +81,7 @@ def test_as_many_workers_for_each_core_keep_to_one_core_and_others_to_none():
     cores = sorted(os.sched_getaffinity(0))
 
     def allowed(count):
-        envs = make_parallel(Mortal, count)
+        envs = ParallelEnv(count * [Idle])
         found = [os.sched_getaffinity(process.pid) for process in envs.processes]
         envs.close()
         return found
