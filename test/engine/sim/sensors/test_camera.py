@@ -1,6 +1,7 @@
 """Images of cameras, and what is published with them, agree with Gazebo's."""
 
 import io
+import itertools
 import math
 from dataclasses import replace
 
@@ -36,6 +37,7 @@ SCENES = {  # picture: world, robot, where it stands along x [m], heading [rad]
     'colours_2e': ('colours_2e', 'camera_level', 0.0, 0.0),
     'colours_2e_from_behind': ('colours_2e', 'camera_level', 6.0, math.pi),
 }
+COLOURS = ('colours_0e', 'colours_1e', 'colours_2e')
 INFOS = recordings('camera_info')
 FACES = recordings('materials')
 
@@ -43,6 +45,22 @@ FACES = recordings('materials')
 def share_off(pixels, name):
     """Return the share of pixels that differ from those of a recorded picture."""
     return (np.abs(pixels.astype(int) - recorded_picture(name)).max(axis=2) > LEVELS).mean()
+
+
+@pytest.fixture(scope='module')
+def shared():
+    """The scene that nothing moves in, with the process that renders it."""
+    with recorded_world() as world:
+        yield world
+
+
+@pytest.fixture
+def scene(shared):
+    """The scene; what is spawned in it is deleted."""
+    before = list(shared.models)
+    yield shared
+    for name in [name for name in shared.models if name not in before]:
+        shared.delete(name)
 
 
 @pytest.mark.parametrize('name', SCENES)
@@ -53,23 +71,31 @@ def test_image_agrees_with_the_recording(name):
         assert share_off(camera.read().pixels, name) < EDGES
 
 
-@pytest.mark.parametrize('behind', [False, True])
-@pytest.mark.parametrize('turned', [False, True])
-@pytest.mark.parametrize('name', ['colours_0e', 'colours_1e', 'colours_2e'])
-def test_colours_of_materials_agree_with_the_recording(name, turned, behind, tmp_path):
-    """Cubes of 0.4 m stand at x = 3, turned by 45 degrees or not; a texture is its mean colour."""
+@pytest.fixture(scope='module', params=itertools.product(COLOURS, (False, True)))
+def cubes(request, tmp_path_factory):
+    """A world of cubes, and whether they are turned."""
+    name, turned = request.param
     text = (RECORDED / 'worlds' / f'{name}.world').read_text(encoding='utf-8')
-    (tmp_path / 'w.world').write_text(text if turned else text.replace('0.785398', '0'))
-    x, yaw, side = (6.0, math.pi, 1) if behind else (0.0, 0.0, -1)
-    with World.from_file(tmp_path / 'w.world') as world:
+    path = tmp_path_factory.mktemp('cubes') / 'w.world'
+    path.write_text(text if turned else text.replace('0.785398', '0'))
+    with World.from_file(path) as world:
         world.scene = replace(world.scene, shadows=False)
-        _, camera = spawn_robot(world, 'camera_level', x, yaw)
-        seen = camera.read().pixels.astype(int)
-        cubes = {
-            name.removeprefix('cube_'): model.pose.position
-            for name, model in world.models.items()
-            if name.startswith('cube_')
-        }
+        yield world, turned
+
+
+@pytest.mark.parametrize('behind', [False, True])
+def test_colours_of_materials_agree_with_the_recording(cubes, behind):
+    """Cubes of 0.4 m stand at x = 3, turned by 45 degrees or not; a texture is its mean colour."""
+    world, turned = cubes
+    x, yaw, side = (6.0, math.pi, 1) if behind else (0.0, 0.0, -1)
+    robot, camera = spawn_robot(world, 'camera_level', x, yaw)
+    seen = camera.read().pixels.astype(int)
+    world.delete(robot.name)
+    places = {
+        name.removeprefix('cube_'): model.pose.position
+        for name, model in world.models.items()
+        if name.startswith('cube_')
+    }
     half = 0.1 * math.sqrt(2.0)  # from the middle of a turned cube to that of a face, along x and y
     faces = {'+x': (0.2, 0.0, 0.0), '-x': (-0.2, 0.0, 0.0), '+z_top': (0.0, 0.0, 0.2)}
     if turned:
@@ -79,7 +105,7 @@ def test_colours_of_materials_agree_with_the_recording(name, turned, behind, tmp
             for y in (-half, half)
         }
     away = {}
-    for material, place in cubes.items():
+    for material, place in places.items():
         for face, shift in faces.items():
             if face not in FACES[material] or shift[0] * side < 0.0:
                 continue
