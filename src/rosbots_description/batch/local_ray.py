@@ -7,20 +7,29 @@ import secrets
 import shutil
 import signal
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, ParamSpec, TypeVar
 
 from ..sim import SimError
 
+P = ParamSpec('P')
+T = TypeVar('T')
+
 _PREFIX, _LOCK = 'rb', 'rosbots.lock'  # of the folder of a Ray that is started here
 _MAX_PLACE = 28  # characters of a folder in which Ray's sockets have names that Linux takes
+# [s, wall] for Ray to start: on a machine with thirty busy programs it has taken more than the 30 s
+# that it gives its server, the raylet's agents and the raylet.
+_START_TIME, _START_POLL = 120, 0.1
 # For Ray on this machine alone: only the loopback interface (the switch is named after the systems
 # where it is off by default), only processes that have the token, and no statistics sent.
 _PRIVATE = {
     'RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER': '0',
     'RAY_AUTH_MODE': 'token',
     'RAY_USAGE_STATS_ENABLED': '0',
+    'RAY_gcs_server_port_wait_time_s': str(_START_TIME),
+    'RAY_agent_register_timeout_ms': str(1000 * _START_TIME),
 }
 
 
@@ -30,13 +39,17 @@ class ClusterError(SimError):
 
 @contextlib.contextmanager
 def private_environment() -> Iterator[None]:
-    """Set the environment of a Ray that is started here; Ray may have been imported before."""
+    """Set the environment of a Ray that is started here; Ray may have been imported before.
+
+    Ray is given two minutes to start.
+    """
     values = {**_PRIVATE, 'RAY_AUTH_TOKEN': secrets.token_hex(32)}
     before = {name: os.environ.get(name) for name in values}
     os.environ.update(values)
     _read_environment()
     try:
-        yield
+        with _patient_start():
+            yield
     finally:
         for name, value in before.items():
             if value is None:
@@ -44,6 +57,36 @@ def private_environment() -> Iterator[None]:
             else:
                 os.environ[name] = value
         _read_environment()
+
+
+@contextlib.contextmanager
+def _patient_start() -> Iterator[None]:
+    """Let Ray wait longer for the raylet to register; its own limit of 30 s has no setting."""
+    from ray._private import services
+
+    untyped: Any = services
+    get_node = untyped.get_node
+    untyped.get_node = _waiting(get_node)
+    try:
+        yield
+    finally:
+        untyped.get_node = get_node
+
+
+def _waiting(get_node: Callable[P, T]) -> Callable[P, T]:
+    """Return `get_node`, which raises a RuntimeError until there is a node, with patience."""
+
+    def wait_for_node(*args: P.args, **kwargs: P.kwargs) -> T:
+        end = time.monotonic() + _START_TIME
+        while True:
+            try:
+                return get_node(*args, **kwargs)
+            except RuntimeError:
+                if time.monotonic() > end:
+                    raise
+                time.sleep(_START_POLL)
+
+    return wait_for_node
 
 
 def _read_environment() -> None:

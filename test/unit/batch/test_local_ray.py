@@ -5,6 +5,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -42,3 +44,30 @@ def test_a_folder_that_cannot_be_made_is_named(place):
         local_ray.own_folder(),
     ):
         pass
+
+
+@pytest.mark.parametrize(('taken', 'starts'), [(0.0, True), (110.0, True), (130.0, False)])
+def test_ray_has_two_minutes_to_start(monkeypatch, taken, starts):
+    inner, now = MagicMock(), [1000.0]
+    ready = now[0] + taken
+
+    def get_node(address, number):
+        assert (address, number) == ('127.0.0.1:1', 'a')
+        if now[0] < ready:
+            raise RuntimeError('no such node')
+        return {'labels': {}}
+
+    def sleep(seconds):
+        now[0] += seconds
+
+    inner.services.get_node = get_node
+    monkeypatch.setitem(sys.modules, 'ray', MagicMock())
+    monkeypatch.setitem(sys.modules, 'ray._private', inner)
+    monkeypatch.setattr(local_ray, 'time', SimpleNamespace(monotonic=lambda: now[0], sleep=sleep))
+    with local_ray.private_environment():
+        if starts:
+            assert inner.services.get_node('127.0.0.1:1', 'a') == {'labels': {}}
+        else:
+            with pytest.raises(RuntimeError, match='no such node'):
+                inner.services.get_node('127.0.0.1:1', 'a')
+    assert inner.services.get_node is get_node
