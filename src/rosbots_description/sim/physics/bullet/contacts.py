@@ -63,13 +63,14 @@ class ContactQueries:
             if distance > 0.0 and load <= 0.0:
                 continue  # near, but not touching
             one, other = Place(a, index_a), Place(b, index_b)
+            is_first = self._is_of(one, body, link)
+            if not is_first and not self._is_of(other, body, link):
+                continue
             force = tuple(
                 load * n + friction[0] * p + friction[2] * q
                 for n, p, q in zip(normal, friction[1], friction[3], strict=True)
             )
-            if not self._is_of(one, body, link):
-                if not self._is_of(other, body, link):
-                    continue
+            if not is_first:
                 one, other, on_a, on_b = other, one, on_b, on_a
                 normal, force = (tuple(-x for x in vector) for vector in (normal, force))
             found.append(
