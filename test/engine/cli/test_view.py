@@ -48,7 +48,7 @@ def viewing(*arguments, in_background=False):
 
 @pytest.mark.parametrize(
     ('end', 'in_background'),
-    [(signal.SIGINT, False), (signal.SIGTERM, False), (signal.SIGTERM, True)],
+    [(signal.SIGINT, False), (signal.SIGTERM, True)],
 )
 def test_the_page_of_a_robot_opens_and_ends_with_a_signal(end, in_background):
     with viewing(ROBOT, '--paused', in_background=in_background) as process:
