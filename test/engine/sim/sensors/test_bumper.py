@@ -174,11 +174,11 @@ def test_ground_is_the_second_of_a_pair_though_it_is_newer(tmp_path):
     """The promise of upstream's test_bumper: the box of a world bears its weight, upwards."""
     parts = '<gravity>0 0 -9.81</gravity>', cube('box', 1.0, 0.5), GROUND_PLANE
     # Bullet's contacts bear no load before they are 10 µm deep.
-    found = readings_in(tmp_path, 'box', *parts, before=100, steps=11_000)
+    found = readings_in(tmp_path, 'box', *parts, before=100, steps=5000)
     messages = [contacts_message(reading) for reading in found]
     assert {message.states[0].collision1_name for message in messages} == {'box::link::c'}
     forces = [message.states[0].total_wrench.force.z for message in messages]
-    assert len(forces) > 20
+    assert len(forces) >= 10
     assert np.mean(forces) == pytest.approx(98.1, abs=0.01)
 
 

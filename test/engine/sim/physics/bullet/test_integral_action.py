@@ -57,7 +57,7 @@ def test_wheels_of_0_02_to_1_m_reach_their_speed_without_overshoot(world, mass, 
     speed = min(1.0, 2.0 * size)
     command(model, speed)
     world.run(round((speed + 0.05) / step))  # the ramp
-    found = excesses(world, model, speed / (size / 4.0), 50 * PERIOD)
+    found = excesses(world, model, speed / (size / 4.0), 30 * PERIOD)
     assert max(found) < OVERSHOOT
     assert max(map(abs, found[20 * PERIOD :])) < 0.005
 
@@ -143,5 +143,5 @@ def test_a_robot_that_pushes_against_a_wall_does_not_wind_up_without_bound(world
     model = spawned(world, castered(casters=1, torque=1e6))
     block(world)
     command(model, 0.2)
-    world.run(20_000)
+    world.run(5000)  # a clamp is reached in 0.1 s
     assert all(abs(one.offset) <= 0.15 * 2.0 + 1.0 for one in model.body.integrals.values())
