@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What strangers once could do to the window, tried again on real servers.
 
-Hundreds of further attempts, at the same door and gate without ROS, are in
+Hundreds of further attempts, at the same page without ROS, are in
 test/unit/web/test_strangers.py and test/unit/ros_api/window/test_xacro_sandbox.py.
 """
 

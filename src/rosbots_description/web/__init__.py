@@ -1,8 +1,8 @@
 """The window in the browser, on viser: what it shows and what it asks for, without ROS."""
 
-from .change import Inspection
+from .access import LOOPBACK
+from .change_panel import Inspection
 from .contacts import Contacts
-from .door import LOOPBACK
 from .downloads import Worlds
 from .drive import Robots
 from .editor import Editor

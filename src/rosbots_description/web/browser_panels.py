@@ -7,7 +7,7 @@ import viser
 
 from ..sim.description import SceneChange, ShownMotion
 from .camera_keys import CameraKeys
-from .change import ChangePanel
+from .change_panel import ChangePanel
 from .drive import DrivePanel, VelocityCommands
 from .editor import EditorPanel
 from .follow import FollowPanel

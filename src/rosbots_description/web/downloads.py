@@ -13,8 +13,8 @@ from viser._messages import FileTransferPart
 from ..sim.core import SimError
 from ..sim.description import ShownMotion
 from .panel import Panel
+from .recordings import PATIENCE, BrowserRecording, SceneRecording, VideoRecording
 from .site import Site
-from .takes import PATIENCE, SceneTake, Take, VideoTake
 from .text import plain
 
 BACKLOG = 50  # parts of files for a browser that wait, at most, when another file is sent
@@ -61,16 +61,21 @@ class DownloadsPanel(Panel):
                 'Picture', viser.Icon.CAMERA, _give_picture, gui, 'what this browser shows, as PNG'
             )
         )
-        self._takes = (
-            TakeButton(
-                gui, 'video', 'video.mp4', 'what this browser shows, as MP4', VideoTake, complain
+        self._recordings = (
+            RecordButton(
+                gui,
+                'video',
+                'video.mp4',
+                'what this browser shows, as MP4',
+                VideoRecording,
+                complain,
             ),
-            TakeButton(
+            RecordButton(
                 gui,
                 'recording',
                 'recording.html',
                 'the scene as it moves, as a page that needs no simulator',
-                lambda client: SceneTake(site, client),
+                lambda client: SceneRecording(site, client),
                 complain,
                 redraw,
             ),
@@ -79,17 +84,17 @@ class DownloadsPanel(Panel):
 
     def move(self, motion: ShownMotion) -> None:
         """Let recordings go on."""
-        for take in self._takes:
-            take.move(motion)
+        for one in self._recordings:
+            one.move(motion)
 
     def refresh(self) -> None:
         """Hand over what has reached its greatest length."""
-        for take in self._takes:
-            take.hand_over_if_full()
+        for one in self._recordings:
+            one.hand_over_if_full()
 
     def _leave(self, client: viser.ClientHandle) -> None:
-        for take in self._takes:
-            take.drop(client)
+        for one in self._recordings:
+            one.drop(client)
 
     def _button(
         self,
@@ -141,8 +146,8 @@ def _give_picture(client: viser.ClientHandle) -> None:
     client.send_file_download('picture.png', made.getvalue(), save_immediately=True)
 
 
-class TakeButton:
-    """Starts and stops a take for one browser at a time."""
+class RecordButton:
+    """Starts and stops a recording for one browser at a time."""
 
     def __init__(
         self,
@@ -150,15 +155,15 @@ class TakeButton:
         called: str,
         file: str,
         hint: str,
-        make: Callable[[viser.ClientHandle], Take],
+        make: Callable[[viser.ClientHandle], BrowserRecording],
         complain: Complain,
         begun: Callable[[viser.ClientHandle], None] = lambda _: None,
     ) -> None:
-        """Add the button; `begun` is called with a browser when its take has begun."""
+        """Add the button; `begun` is called with a browser when its recording has begun."""
         self._called, self._file, self._make, self._complain = called, file, make, complain
         self._begun = begun
         self._lock = threading.Lock()
-        self._running: tuple[Take, viser.ClientHandle] | None = None
+        self._running: tuple[BrowserRecording, viser.ClientHandle] | None = None
         self._button = gui.add_button('', icon=viser.Icon.PLAYER_RECORD, hint=hint)
         self._button.on_click(self._click)
         self._label()
@@ -170,14 +175,14 @@ class TakeButton:
                 self._running[0].move(motion)
 
     def hand_over_if_full(self) -> None:
-        """End a take that has reached its greatest length."""
+        """End a recording that has reached its greatest length."""
         running = self._running
         if running is not None and running[0].is_full:
             self._complain(f'The {self._called} is as long as it can be, and ends.')
             threading.Thread(target=self._hand_over, daemon=True).start()
 
     def drop(self, client: viser.ClientHandle) -> None:
-        """End the take of a browser that has disconnected."""
+        """End the recording of a browser that has disconnected."""
         with self._lock:
             is_its = self._running is not None and self._running[1] is client
         running = self._stop() if is_its else None
@@ -206,7 +211,7 @@ class TakeButton:
                 'installed; ./rosbots setup does that.'
             )
 
-    def _stop(self) -> tuple[Take, viser.ClientHandle] | None:
+    def _stop(self) -> tuple[BrowserRecording, viser.ClientHandle] | None:
         with self._lock:
             running, self._running = self._running, None
         self._label()
@@ -216,8 +221,8 @@ class TakeButton:
         running = self._stop()
         if running is None:  # somebody else stopped it, too
             return
-        take, client = running
-        content = take.finish()
+        recording, client = running
+        content = recording.finish()
         if content:
             client.send_file_download(self._file, content, save_immediately=True)
         else:

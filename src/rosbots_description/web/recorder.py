@@ -2,10 +2,10 @@
 
 from ..sim.description import SceneChange, ShownMotion
 from .models import Models
+from .recordings import SceneRecording
 from .scene import SceneView
 from .site import Site
 from .start_view import StartView
-from .takes import SceneTake
 
 
 class Recorder:
@@ -17,7 +17,7 @@ class Recorder:
         models = Models()
         self._start = StartView(models)
         self._panels = models, self._start, SceneView(self._site, lambda _model, _link, _: None)
-        self._take: SceneTake | None = None
+        self._take: SceneRecording | None = None
 
     @property
     def is_full(self) -> bool:
@@ -31,7 +31,7 @@ class Recorder:
         if self._take is None:
             camera = self._site.initial_camera
             camera.position, camera.look_at = self._start.choose()
-            self._take = SceneTake(self._site)
+            self._take = SceneRecording(self._site)
 
     def move(self, motion: ShownMotion) -> None:
         """Take in a motion; its real time is that at which it is played."""

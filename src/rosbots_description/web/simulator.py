@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from ..sim.description import SceneChange, ShownMotion
-from .change import Inspection
+from .change_panel import Inspection
 from .contacts import Contacts
 from .downloads import Worlds
 from .drive import Robots

@@ -1,4 +1,4 @@
-"""Where the page is served: viser's server on a socket of our own, with a door and a gate."""
+"""Where the page is served: viser's server, behind a check of tokens and a gate for messages."""
 
 import logging
 import socket
@@ -12,9 +12,9 @@ import viser
 import websockets.asyncio.server
 from viser.infra import WebsockClientConnection
 
-from .door import TOKEN, Door, Process, new_token
-from .gate import MAX_MESSAGE, MOST_CLIENTS, Control, Gate, Handler, Received
+from .access import TOKEN, Access, Process, new_token
 from .loop_event import leave_to_loop
+from .message_gate import MAX_MESSAGE, MOST_CLIENTS, Control, Handler, MessageGate, Received
 from .policy import page_headers
 
 Allow = Callable[..., None]  # as `Site.allow_viewers`
@@ -66,14 +66,14 @@ class Site(viser.ViserServer):
         place = f'http://{shown}:{port}/'
         self.address = place + (f'?token={self.token}' if self.token else '')
         self.viewing_address = f'{place}?token={self.viewing_token}' if self.viewing_token else ''
-        self._gate = gate = Gate(self, most_viewers)
-        door = Door(host, port, self.token, self.viewing_token, page_headers(is_framed))
+        self._gate = gate = MessageGate(self, most_viewers)
+        access = Access(host, port, self.token, self.viewing_token, page_headers(is_framed))
         rich.reconfigure(quiet=True)  # viser's own lines
         logging.getLogger('websockets.server').addFilter(_is_kept)
         # Somebody has left, which is no fault.
         warnings.filterwarnings('ignore', r'Queued a \w+ on a closed connection')
         # Viser looks for a free port by itself and takes no socket and no guard.
-        with mock.patch('websockets.asyncio.server.serve', _serving(listener, door, gate)):
+        with mock.patch('websockets.asyncio.server.serve', _serving(listener, access, gate)):
             super().__init__(host, port, verbose=False)
         leave_to_loop(self._websock_server.get_message_buffer())
         self._websock_server.on_client_connect(self._prepare)
@@ -111,8 +111,8 @@ def _is_kept(record: logging.LogRecord) -> bool:
     return 'handshake' not in record.getMessage() and 'rejected' not in record.getMessage()
 
 
-def _serving(listener: socket.socket, door: Door, gate: Gate) -> Callable[..., object]:
-    """Return what viser is to call to serve: on our socket, for whom door and gate let in."""
+def _serving(listener: socket.socket, access: Access, gate: MessageGate) -> Callable[..., object]:
+    """Return what viser is to call to serve: on our socket, for those with access."""
     serve = websockets.asyncio.server.serve
 
     def serve_here(
@@ -120,7 +120,7 @@ def _serving(listener: socket.socket, door: Door, gate: Gate) -> Callable[..., o
     ) -> websockets.asyncio.server.serve:
         options |= {
             'sock': listener,
-            'process_request': door.guarding(process_request),
+            'process_request': access.guarding(process_request),
             'create_connection': gate.connection_class(),
             'max_size': MAX_MESSAGE,
             'max_queue': 1,

@@ -4,7 +4,7 @@ import pytest
 from support import box_urdf
 
 from rosbots_description.sim import SimError, World
-from rosbots_description.web.takes import SceneTake
+from rosbots_description.web.recordings import SceneRecording
 
 CRATE = f'<robot name="crate">{box_urdf("0.5 0.5 0.5", 2.0)}</robot>'
 
@@ -22,9 +22,11 @@ def fallen(path=None):
 
 def test_recording_is_a_page_with_the_motion_and_does_not_change_it(tmp_path, monkeypatch):
     motions = []
-    move = SceneTake.move
+    move = SceneRecording.move
     monkeypatch.setattr(
-        SceneTake, 'move', lambda take, motion: (motions.append(motion), move(take, motion))
+        SceneRecording,
+        'move',
+        lambda recording, motion: (motions.append(motion), move(recording, motion)),
     )
     path = tmp_path / 'drop.html'
     pose, recording = fallen(path)

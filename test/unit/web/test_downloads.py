@@ -20,8 +20,8 @@ from support.window import clock, model
 
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import SceneChange
-from rosbots_description.web import takes
-from rosbots_description.web.downloads import TakeButton
+from rosbots_description.web import recordings
+from rosbots_description.web.downloads import RecordButton
 from rosbots_description.web.layout import OPAQUE
 
 SIZE = (100, 100)  # [pixels] of the browser's picture
@@ -70,7 +70,7 @@ def test_a_video_has_the_frames_of_the_browser_in_their_time(browser):
     assert colours == sorted(colours)
     assert {0, 1, 2} == set(colours)
     assert frames[0].time == 0.0
-    assert 1.5 / takes.RATE < frames[-1].time < time.monotonic() - begin
+    assert 1.5 / recordings.RATE < frames[-1].time < time.monotonic() - begin
     browser.wait_until(lambda: browser.control('Record a video'))
 
 
@@ -131,7 +131,7 @@ def test_a_recording_has_boxes_and_overlays_of_its_browser_and_of_no_other(
 
 
 def test_a_recording_that_is_long_enough_ends_by_itself(browser, simulator, page, monkeypatch):
-    monkeypatch.setattr(takes, 'LONGEST', 2.0)
+    monkeypatch.setattr(recordings, 'LONGEST', 2.0)
     browser.click('Record a recording')
     browser.wait_until(lambda: browser.control('Stop the recording'))
     simulator.motion(clock(1.0, real_time=1.0))
@@ -165,7 +165,7 @@ def test_two_clicks_at_once_begin_one_take_and_end_it(site):
         go_on.wait(60.0)
         return begun[-1]
 
-    button = TakeButton(site.gui, 'video', 'video.mp4', '', make, complaints.append)
+    button = RecordButton(site.gui, 'video', 'video.mp4', '', make, complaints.append)
     clicks = [
         threading.Thread(target=button._click, args=(SimpleNamespace(client=1),)) for _ in range(2)
     ]

@@ -19,8 +19,8 @@ from support.window import FakeSimulator, serving
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from rosbots_description.sim.description import SceneChange
-from rosbots_description.web import Page, gate
-from rosbots_description.web.gate import MOST_CLIENTS, MOST_EARLY
+from rosbots_description.web import Page, message_gate
+from rosbots_description.web.message_gate import MOST_CLIENTS, MOST_EARLY
 from rosbots_description.web.uploads import MAX_BYTES, OF_ONE
 
 UPLOAD = 'Upload URDF, xacro or SDF'
@@ -497,7 +497,7 @@ def test_there_is_room_for_so_many_browsers(site):
 
 
 def test_a_command_waits_while_many_others_do_and_is_not_lost(browser, site, served, monkeypatch):
-    monkeypatch.setattr(gate, 'BACKLOG', 0)
+    monkeypatch.setattr(message_gate, 'BACKLOG', 0)
     browser.wait_until(lambda: browser.control('Pause'))
     executor, begun, released = site._thread_executor, threading.Semaphore(0), threading.Event()
 

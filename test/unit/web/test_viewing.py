@@ -12,10 +12,10 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import CommandTopic, SceneChange
 from rosbots_description.web import Page, Site, WindowError
+from rosbots_description.web.access import Pass
 from rosbots_description.web.client_messages import KINDS
-from rosbots_description.web.door import Pass
-from rosbots_description.web.gate import LOOKS, OF_VIEWERS
 from rosbots_description.web.gizmo import NODE
+from rosbots_description.web.message_gate import LOOKS, OF_VIEWERS
 from rosbots_description.web.overlays import OVERLAYS
 
 BOX = '/models/box/link'
@@ -213,7 +213,7 @@ def test_the_two_addresses_have_two_tokens_two_paths_and_two_cookies(site):
 
 
 def site_passes(site):
-    """Return the passes of its door."""
+    """Return the passes of those that have access."""
     control = Pass(SECRET, True, f'rosbots_window_{site.get_port()}')
     return control, Pass(VIEWING, False, f'rosbots_viewing_{site.get_port()}')
 

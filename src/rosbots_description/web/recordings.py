@@ -25,7 +25,7 @@ PATIENCE = 60.0  # [s, wall] for a frame; the first one in a browser without a g
 _MILLISECONDS = 1000
 
 
-class Take(Protocol):
+class BrowserRecording(Protocol):
     """Something that is being recorded."""
 
     @property
@@ -39,7 +39,7 @@ class Take(Protocol):
         """End, and return the file; b'' if there is nothing in it."""
 
 
-class SceneTake:
+class SceneRecording:
     """The scene and its motion, as a page that needs no server."""
 
     def __init__(self, site: viser.ViserServer, client: viser.ClientHandle | None = None) -> None:
@@ -99,7 +99,7 @@ class _OwnNodes:
             self._serializer._insert_message(message)
 
 
-class VideoTake:
+class VideoRecording:
     """What a browser shows, as H.264 in MP4."""
 
     def __init__(self, client: viser.ClientHandle) -> None:

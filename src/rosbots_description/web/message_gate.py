@@ -16,8 +16,8 @@ from viser._messages import FileTransferPartAck, GuiUpdateMessage
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
+from .access import CONTROLS
 from .client_messages import MalformedError, Message, RefusedError, check_value, is_camera, read
-from .door import CONTROLS
 from .notices import left_out, show
 from .rate_limit import RateLimit
 from .uploads import Upload, Uploads
@@ -65,7 +65,7 @@ class Visitor:
     left_out: int = 0  # notices since the last one
 
 
-class Gate:
+class MessageGate:
     """Reads the messages of all connections; on the server's own thread."""
 
     def __init__(self, site: viser.ViserServer, most_clients: int = MOST_CLIENTS) -> None:

@@ -66,13 +66,13 @@ class Pass:
         )
 
 
-class Door:
+class Access:
     """Decides which requests are let in, and which of the connections may control."""
 
     def __init__(
         self, host: str, port: int, token: str, viewing_token: str, headers: dict[str, str]
     ) -> None:
-        """Make the door of a server.
+        """Make the access to a server.
 
         Args:
             host: the address that is served; port: its port.
