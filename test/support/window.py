@@ -1,7 +1,7 @@
 """What the window's page is tested with: a simulator that remembers, and what it would show."""
 
 from contextlib import contextmanager
-from functools import partial
+from functools import partialmethod
 
 from rosbots_description.sim.core import Pose, SimError, Twist
 from rosbots_description.sim.description import (
@@ -14,8 +14,10 @@ from rosbots_description.sim.description import (
     ShownReading,
     Visual,
 )
-from rosbots_description.web import Site
+from rosbots_description.web import Editor, Goals, Inspection, Joints, Library, Robots, Site, Worlds
 from rosbots_description.web.models import Models
+from rosbots_description.web.simulator import View
+from rosbots_description.web.time_control import TimeControl
 
 
 @contextmanager
@@ -42,7 +44,16 @@ class FakeContacts:
 
 
 class Remembering:
-    """Remembers what it is told, and refuses with its fault if it has one."""
+    """Remembers what it is told, and refuses with its fault if it has one.
+
+    It has the methods of `parts`, protocols of the page, that a subclass does not define.
+    """
+
+    def __init_subclass__(cls, parts=()):
+        for part in parts:
+            for name in dir(part):
+                if not name.startswith('_') and not hasattr(cls, name):
+                    setattr(cls, name, partialmethod(cls._note, name))
 
     def __init__(self):
         self.told, self.fault = [], ''
@@ -51,16 +62,15 @@ class Remembering:
         """Return what was told by the methods of these names."""
         return [told for told in self.told if told[0] in names]
 
-    def __getattr__(self, name):
-        return partial(self._note, name)
-
     def _note(self, name, *arguments):
         self.told.append((name, *arguments))
         if self.fault:
             raise SimError(self.fault)
 
 
-class FakeSimulator(Remembering):
+class FakeSimulator(
+    Remembering, parts=(View, TimeControl, Robots, Inspection, Editor, Library, Worlds)
+):
     """A simulator; most parts of it are this object."""
 
     def __init__(self):
@@ -127,7 +137,7 @@ class FakeSimulator(Remembering):
         return ModelText(name, 'text', pose=Pose((1.0, 0.0, 0.0)))
 
 
-class FakeJoints(Remembering):
+class FakeJoints(Remembering, parts=(Joints,)):
     """Joints that all stand at `now`."""
 
     def __init__(self):
@@ -184,7 +194,7 @@ class FakeMaps(FakeTopics):
         return self.truth
 
 
-class FakeGoals(Remembering):
+class FakeGoals(Remembering, parts=(Goals,)):
     """Topics of poses; `frames` says at which link each frame is, and where."""
 
     def __init__(self):
