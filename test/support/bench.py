@@ -70,7 +70,8 @@ class Bench:
         self.world = world
         registrar = SimpleNamespace(await_registration=lambda _name: None)
         loop = SimpleNamespace(
-            **dict.fromkeys(('call', 'post', 'run_in_thread'), lambda command: command())
+            **dict.fromkeys(('call', 'post', 'run_in_thread'), lambda command: command()),
+            stopping=False,
         )
         self.server = Server(
             world, loop, registrar, package_directory, lambda _inner: None, _sandbox()

@@ -63,9 +63,9 @@ def service(
     return add
 
 
-def refuse(response: Message, text: str) -> Message:
+def refuse(response: Message, text: str, level: int = logging.ERROR) -> Message:
     """Return the response with success=False and the text, which is logged as well."""
-    logger.error('%s', text)
+    logger.log(level, '%s', text)
     response.success, response.status_message = False, text
     return response
 
@@ -107,17 +107,19 @@ def respond(server: Server, entry: Service, request: Message) -> Message:
     except CallError:
         raise
     except SimError as error:
-        return _failure(entry, response_class(), str(error))
+        # At the end of the simulator that is no error, but how calls end.
+        level = logging.INFO if server.loop.stopping else logging.ERROR
+        return _failure(entry, response_class(), str(error), level)
     if entry.registers:
         server.registrar.await_registration(entry.name)
     return response
 
 
-def _failure(entry: Service, response: Message, sentence: str) -> Message:
+def _failure(entry: Service, response: Message, sentence: str, level: int) -> Message:
     """Return `response` with success=False and the message, prefixed by the service's type."""
     if hasattr(response, 'success'):
-        return refuse(response, f'{entry.type.__name__}: Failure - {sentence}')
+        return refuse(response, f'{entry.type.__name__}: Failure - {sentence}', level)
     # Types without `success`, such as std_srvs/Empty, are shared by several services.
     text = f'{entry.name}: Failure - {sentence}'
-    logger.error('%s', text)
+    logger.log(level, '%s', text)
     raise CallError(text)

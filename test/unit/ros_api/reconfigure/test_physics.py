@@ -20,7 +20,7 @@ class FakeServer:
         self.world = SimpleNamespace(
             physics=PhysicsSettings(), paused=False, set_physics=self._set_physics
         )
-        self.loop = SimpleNamespace(call=self._call)
+        self.loop = SimpleNamespace(call=self._call, stopping=False)
         self.changes = 0
 
     def physics_changed(self):

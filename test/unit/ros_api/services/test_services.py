@@ -26,8 +26,9 @@ from rosbots_description.sim.plugin_registry.registry import (
     sensor_plugin_class,
 )
 
-SERVER = SimpleNamespace(
-    loop=SimpleNamespace(**dict.fromkeys(('call', 'run_in_thread'), lambda command: command()))
+CALLS = dict.fromkeys(('call', 'run_in_thread'), lambda command: command())
+SERVER, ENDING = (
+    SimpleNamespace(loop=SimpleNamespace(**CALLS, stopping=stopping)) for stopping in (False, True)
 )
 DONE = DeleteModelResponse(True, 'done')
 
@@ -59,6 +60,13 @@ def test_exception_becomes_a_failure_with_its_message(answer, prepare):
     response = respond(SERVER, Service('s', DeleteModel, answer, prepare), None)
     assert not response.success
     assert response.status_message == 'DeleteModel: Failure - link a is missing'
+
+
+@pytest.mark.parametrize(('server', 'level'), [(SERVER, 'ERROR'), (ENDING, 'INFO')])
+def test_refusal_is_an_error_but_at_the_end_of_the_simulator(server, level, caplog):
+    caplog.set_level('INFO')
+    respond(server, Service('s', DeleteModel, _fail), None)
+    assert [record.levelname for record in caplog.records] == [level]
 
 
 def test_exception_in_a_service_without_success_field_fails_the_call():
