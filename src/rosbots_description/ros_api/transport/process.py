@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import rospy
 import rospy.impl.init
 from rosgraph.network import get_address_override
-from rospy.impl.registration import get_registration_listeners
+from rospy.impl import registration
 
 from .log_file import disable_log_file, log_file, tolerate_full_disk, write_error
 from .polling import close_pollers
@@ -29,6 +29,7 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     path = log_file(name, arguments)
     reason = write_error(path)
     _begin_at_once()
+    _register_until_the_end()
     close_pollers()
     rospy.init_node(name, [name, *arguments, *(disable_log_file() if reason else ())], **options)
     _end_at_once()
@@ -81,6 +82,16 @@ def _begin_at_once() -> None:
     rospy.impl.init.time = SimpleNamespace(sleep=lambda _seconds: time.sleep(_POLL_PERIOD))
 
 
+def _register_until_the_end() -> None:
+    """Let registrations that no master takes end when the node is told to.
+
+    rospy lets them go on until it calls the node shut down, which comes after its clean-up. But
+    they hold the lock of all topics, for which the clean-up waits: the node would never end. There
+    is no public API for this.
+    """
+    registration.is_shutdown = rospy.core.is_shutdown_requested
+
+
 def _end_at_once() -> None:
     """Shut down up to 0.5 s faster.
 
@@ -90,7 +101,7 @@ def _end_at_once() -> None:
     # Collected now: rospy clears the list before the hook runs.
     conditions = [
         listener.cond
-        for listener in get_registration_listeners().listeners
+        for listener in registration.get_registration_listeners().listeners
         if hasattr(listener, 'cond')
     ]
 

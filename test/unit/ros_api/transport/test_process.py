@@ -1,8 +1,11 @@
-"""Nodes start without the fixed sleeps of rospy."""
+"""Nodes start without the fixed sleeps of rospy, and end without a master."""
 
+import threading
 from types import SimpleNamespace
 
 import rospy.impl.init
+from rospy.impl import registration
+from support.patience import PATIENCE
 
 from rosbots_description.ros_api.transport import process
 
@@ -23,3 +26,19 @@ def test_node_start_does_not_sleep_once_registered(monkeypatch):
     assert init.start_node({}, '/node', 'http://master') is node
     assert len(slept) == 2
     assert sum(slept) < 0.01  # [s]
+
+
+def test_a_registration_that_no_master_takes_ends_with_the_node(monkeypatch):
+    monkeypatch.setattr(registration, 'is_shutdown', registration.is_shutdown)
+    monkeypatch.setattr(rospy.core, '_in_shutdown', True)  # but not shut down yet
+    process._register_until_the_end()
+    manager = registration.RegManager(None)
+    manager.master_uri = manager.uri = 'http://localhost:1'
+    register = threading.Thread(
+        target=manager.reg_added,
+        args=('/topic', 'std_msgs/Empty', registration.Registration.PUB),
+        daemon=True,
+    )
+    register.start()
+    register.join(PATIENCE)
+    assert not register.is_alive()

@@ -82,6 +82,8 @@ def test_attributes_that_we_use_exist(make, names):
         (rospy.topics._TopicImpl.__init__, 'Poller'),
         (tcpros_base.TCPROSTransport.receive_once, 'recv_buff'),
         (rospy.impl.init.start_node, 'time'),
+        (registration.RegManager.reg_added, 'is_shutdown'),
+        (registration.RegManager.start, 'is_shutdown'),
     ],
 )
 def test_rospy_looks_up_replaced_functions_at_each_call(function, name):
