@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 """Mutation testing: whether the tests notice a wrong number, sign or comparison, or a lost line.
 
-One place of a file is changed, and the unit and engine tests that import the file run, those of its
-own folder first, the quickest before others, up to the first that fails. That happens in a fork of
-this process, where the import of the file gives the changed one; no file is written, and programs
-that a test starts have the unchanged one. A mutant that no test notices survived: it is to become a
-test, or to show that the line is not needed. Tests that fail without any change are left out.
+First all unit and engine tests that import the files run once, and it is recorded which functions
+of the product each of them calls. Then one place is changed at a time, and the tests that call its
+function run, those of the file's own folder and the quickest first, up to the first that fails. A
+constant counts as called where its name is read.
+
+All that happens in forks, where the import of the file gives the changed one; no file is written,
+and programs that a test starts have the unchanged one. A mutant that no test notices survived: it
+is to become a test, or to show that the line is not needed. Tests that fail without any change are
+left out.
 
     ./rosbots bench mutants [--sample N] [--seed S] [--own] [--lines] [--again OUTPUT] [FOLDER…]
 """
@@ -17,31 +21,33 @@ import ast
 import contextlib
 import faulthandler
 import importlib
-import json
 import math
+import multiprocessing
 import os
+import pickle
 import random
 import resource
 import signal
 import sys
 import tempfile
 import time
-from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
-from mutation import changed_line, mutant, places, statements
+import pytest
+from calls import Function, Record, Recorder
+from mutation import changed_line, mutant, parts, place_of, places, statements
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / 'tools'))
 from changed import dependencies, test_files
 from results import ROOT
 
-if TYPE_CHECKING:
-    import pytest
-
-PACKAGE = Path('src', 'rosbots_description')
+PACKAGE = ROOT / 'src' / 'rosbots_description'
 ROOMS = (
     'sim/plugins/drive',
     'sim/sensors',
@@ -52,9 +58,9 @@ ROOMS = (
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
 # A test that takes as long hangs, which counts as noticed. The slowest takes 20 s of the processor.
 HOPELESS_CPU, HOPELESS_WALL = 120, 1800  # [s]
+SHARES = 16  # of the files that run without any change; a process at a time takes one
 # What tests import besides the product; all forks share it.
 OTHERS = (
-    'pytest',
     '_pytest.assertion.rewrite',
     'hypothesis',
     'numpy',
@@ -76,50 +82,48 @@ OTHERS = (
 )
 
 
-def tests_of(path: Path) -> list[list[str]]:
-    """Return the tests that import a file, in an order in which most mutants are noticed early.
+FORK = multiprocessing.get_context('fork')
+T = TypeVar('T')
 
-    Those that have its name, unit and engine tests of its folder, which is the nearest one above
-    that has tests, and all others.
+
+@dataclass(frozen=True)
+class Mutant:
+    """One changed place of a file."""
+
+    path: Path
+    tree: ast.Module  # unchanged
+    number: int  # of the node
+
+    def __str__(self) -> str:
+        """Return file and line, before and after."""
+        return f'{self.path.relative_to(PACKAGE)}: ' + '  ->  '.join(
+            changed_line(self.tree, self.number)
+        )
+
+
+class Selection:
+    """Runs some tests in their order, as a plugin of pytest.
+
+    Attributes:
+        failed: names of tests that failed, or of files that cannot be imported.
     """
-    found = [test.relative_to(ROOT) for test in test_files() if path in dependencies(test)]
-    folders = [one.parts for one in path.relative_to(ROOT / PACKAGE).parents]
-    near = next(one for one in folders if not one or one in {test.parts[2:-1] for test in found})
-    own = [test for test in found if test.parts[2:-1] == near]
-    named = [test for test in own if test.name == f'test_{path.name}']
-    rest = [test for test in own if test not in named]
-    others = [test for test in found if test not in own]
-    stages = [
-        named,
-        *([test for test in rest if test.parts[1] == level] for level in ('unit', 'engine')),
-        others,
-    ]
-    return [list(map(str, stage)) for stage in stages]
 
+    def __init__(self, tests: list[str]) -> None:
+        self.failed: list[str] = []
+        self._order = {name: place for place, name in enumerate(tests)}
 
-@dataclass(eq=False)  # pytest wants plugins that can be hashed
-class Report:
-    """Part of pytest's report, collected as its plugin."""
-
-    seconds: dict[str, float] = field(default_factory=lambda: defaultdict(float))  # by file
-    failed: list[str] = field(default_factory=list)  # names of tests, or of files without import
+    @pytest.hookimpl(trylast=True)  # type: ignore[untyped-decorator]
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Leave out all other tests, and undo the order of test/conftest.py."""
+        items[:] = [item for item in items if item.nodeid in self._order]
+        items.sort(key=lambda item: self._order[item.nodeid])
 
     def pytest_runtest_setup(self) -> None:
         """Limit the time of each test."""
         _limit_time()
 
-    def pytest_collection_modifyitems(
-        self, config: pytest.Config, items: list[pytest.Item]
-    ) -> None:
-        """Restore the order of the command line, which test/conftest.py changes."""
-        order = {
-            Path(name.partition('::')[0]).resolve(): place for place, name in enumerate(config.args)
-        }
-        items.sort(key=lambda item: order[item.path])
-
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Note one phase of a test."""
-        self.seconds[report.nodeid.partition('::')[0]] += report.duration
+        """Note a test that failed."""
         if report.failed:
             self.failed.append(report.nodeid)
 
@@ -136,46 +140,126 @@ class Tests:
         broken: tests that fail without any change.
     """
 
-    def __init__(self) -> None:
-        self.broken: set[str] = set()
-        self._sound: set[str] = set()  # tests, or all of some files, that pass without any change
-        self._seconds: dict[str, float] = {}  # by file, as far as known
+    def __init__(self, records: dict[str, Record], imported: frozenset[Function]) -> None:
+        self.broken = {name for name, record in records.items() if record.failed}
+        self._records = records
+        self._imported = imported
+        self._parts = [
+            part for path in files(['.']) for part in parts(path, ast.parse(path.read_bytes()))
+        ]
+        self._sound: set[str] = set()  # tests that pass without any change when they run alone
 
-    def notice(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
+    def of(self, one: Mutant) -> tuple[list[str], list[str]]:
+        """Return the tests that can notice a mutant: those of its file's own folder, and others.
+
+        The own folder is the nearest one above the file that has tests. Those with the file's name
+        come first, then the quicker.
+        """
+        line, names = place_of(one.tree, one.number)
+        function = (str(one.path), line)
+        outside = not line or function in self._imported
+        calls = self._readers(names) if outside else {function}
+        found = {name for name, record in self._records.items() if record.calls & calls}
+        folders = {_folder(name) for name in self._records}
+        near = next(
+            (path.parts for path in one.path.relative_to(PACKAGE).parents if path.parts in folders),
+            (),
+        )
+        named = {name for name in self._records if f'/test_{one.path.name}' in name}
+        own = {name for name in found if _folder(name) == near} | (named if outside else set())
+
+        def order(name: str) -> tuple[bool, float]:
+            return name not in named, self._records[name].seconds
+
+        return sorted(own, key=order), sorted(found - own, key=order)
+
+    def _readers(self, names: frozenset[str]) -> set[Function]:
+        """Return the functions that read one of these names, or what is computed of them."""
+        known = set(names)
+        while True:
+            readers = [part for part in self._parts if part.reads & known]
+            more = set().union(*(part.defined for part in readers)) - known
+            if not more:
+                return {(str(part.path), part.line) for part in readers if part.line}
+            known |= more
+
+    def notice(self, one: Mutant, tests: list[str]) -> str:
+        """Return how tests notice a mutant, or '' if they do not."""
+        return self.notice_change(one.path, mutant(one.tree, one.number), tests)
+
+    def notice_change(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
         """Return how tests notice that a file has another content, or '' if they do not."""
-        while files := sorted(set(tests) - self.broken, key=self._order):
-            left_out = [f'--deselect={name}' for name in self.broken if '::' in name]
-            report, verdict = _run(path, changed, ['-x', *files, *left_out])
-            for name, seconds in report.seconds.items():
-                self._seconds[name] = max(seconds, self._seconds.get(name, 0.0))
+        while left := [name for name in tests if name not in self.broken]:
+            failed, verdict = _run_tests(left, path, changed)
             if not verdict:
                 return ''
-            blamed = report.failed[:1] or files
+            blamed = failed[:1] or left
             if self._is_sound(blamed):
-                return ' '.join((verdict, *report.failed[:1]))
-            if not report.failed:
-                raise SystemExit(f'without any change, one {verdict}, too: {" ".join(files)}')
+                return ' '.join((verdict, *failed[:1]))
+            if blamed[0] not in left or not failed:
+                raise SystemExit(f'{verdict} without any change, too: {" ".join(blamed)}')
             self.broken.add(blamed[0])
         return ''
-
-    def _order(self, name: str) -> tuple[float, str]:
-        return self._seconds.get(name, 0.0), name
 
     def _is_sound(self, tests: list[str]) -> bool:
         """Tell whether tests pass without any change."""
         called = ' '.join(tests)
-        if called not in self._sound and not _run(None, None, tests)[1]:
+        if called not in self._sound and not _run_tests(tests)[1]:
             self._sound.add(called)
         return called in self._sound
 
 
-def _run(path: Path | None, changed: ast.Module | None, arguments: list[str]) -> tuple[Report, str]:
-    """Run pytest in a fork, with another content of a file if given.
+def _folder(name: str) -> tuple[str, ...]:
+    """Return the folder of a test, below that of its level."""
+    return Path(name.partition('::')[0]).parts[2:-1]
+
+
+def _run_tests(
+    tests: list[str], path: Path | None = None, changed: ast.Module | None = None
+) -> tuple[list[str], str]:
+    """Run tests up to the first that fails, with another content of a file if given.
 
     Returns:
-        the report, empty if the tests did not end by themselves; and 'failed', 'hung', 'crashed',
-        or '' if all tests passed.
+        what failed; and 'failed', 'hung', 'crashed', or '' if all tests passed.
     """
+
+    def run() -> list[str]:
+        _limit_time()
+        if path and changed:
+            _replace(path, changed)
+        selection = Selection(tests)
+        files = dict.fromkeys(name.partition('::')[0] for name in tests)
+        if code := _run_pytest(selection, '-x', *files):
+            selection.failed.append(code)
+        return selection.failed
+
+    failed, status = in_fork(run)
+    if failed is None:
+        return [], ('hung' if -status in (signal.SIGALRM, signal.SIGXCPU) else 'crashed')
+    return failed, 'failed' if failed else ''
+
+
+def record(tests: list[str]) -> tuple[dict[str, Record], frozenset[Function]]:
+    """Run files of tests without any change.
+
+    Returns:
+        what each test calls, by its name; and the functions that imports call.
+    """
+
+    def run() -> tuple[dict[str, Record], frozenset[Function]]:
+        recorder = Recorder(ROOT)
+        recorder.start()
+        _run_pytest(recorder, *tests)
+        return recorder.records(), recorder.imported()
+
+    recorded, status = in_fork(run)
+    if recorded is None:
+        raise SystemExit(f'without any change, the tests end with {status}: {" ".join(tests)}')
+    return recorded
+
+
+def in_fork(run: Callable[[], T]) -> tuple[T | None, int]:
+    """Return what a function returns in a fork, which prints nothing; or None, and its status."""
     with tempfile.TemporaryFile() as output:
         child = os.fork()
         if child == 0:
@@ -186,11 +270,7 @@ def _run(path: Path | None, changed: ast.Module | None, arguments: list[str]) ->
                     os.dup2(nowhere.fileno(), 2)
                 resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
                 faulthandler.disable()  # a crash is a result, of which nobody needs a trace
-                _limit_time()
-                if path:
-                    _replace(path, changed)
-                report = _run_pytest(arguments)
-                output.write(json.dumps(report.__dict__).encode())
+                output.write(pickle.dumps(run()))
                 output.flush()
             os._exit(0)
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
@@ -198,10 +278,7 @@ def _run(path: Path | None, changed: ast.Module | None, arguments: list[str]) ->
             os.killpg(child, signal.SIGKILL)  # what its tests have left behind
         output.seek(0)
         text = output.read()
-    if not text:
-        return Report(), ('hung' if -status in (signal.SIGALRM, signal.SIGXCPU) else 'crashed')
-    report = Report(**json.loads(text))
-    return report, 'failed' if report.failed else ''
+    return (pickle.loads(text) if text else None), status
 
 
 def _limit_time() -> None:
@@ -211,31 +288,31 @@ def _limit_time() -> None:
     signal.alarm(HOPELESS_WALL)
 
 
-def _replace(path: Path, changed: ast.Module | None) -> None:
+def _replace(path: Path, changed: ast.Module) -> None:
     """Let imports of a file in this process give the changed content."""
     get_code = SourceFileLoader.get_code
 
     def get_changed(loader: SourceFileLoader, name: str) -> object:
-        if changed is not None and Path(loader.path).resolve() == path:  # the product has two names
+        if Path(loader.path).resolve() == path:  # the product has two names
             return compile(changed, str(path), 'exec')
         return get_code(loader, name)
 
     SourceFileLoader.get_code = get_changed  # type: ignore[method-assign, assignment]
 
 
-def _run_pytest(arguments: list[str]) -> Report:
-    import pytest
-
+def _run_pytest(plugin: object, *arguments: str) -> str:
+    """Run pytest; return why it ended before all tests were run, or ''."""
     sys.dont_write_bytecode = True
-    report = Report()
-    code = int(
-        pytest.main(
-            ['-q', '-p', 'no:cacheprovider', '-p', 'no:xdist', *arguments], plugins=[report]
-        )
+    code = pytest.main(
+        ['-q', f'--rootdir={ROOT}', '-p', 'no:cacheprovider', '-p', 'no:xdist', *arguments],
+        plugins=[plugin],
     )
-    if code > pytest.ExitCode.TESTS_FAILED and code != pytest.ExitCode.NO_TESTS_COLLECTED:
-        report.failed.append(f'pytest: exit code {code}')
-    return report
+    expected = (
+        pytest.ExitCode.OK,
+        pytest.ExitCode.TESTS_FAILED,
+        pytest.ExitCode.NO_TESTS_COLLECTED,
+    )
+    return '' if code in expected else f'pytest: exit code {int(code)}'
 
 
 def files(rooms: list[str]) -> list[Path]:
@@ -244,27 +321,10 @@ def files(rooms: list[str]) -> list[Path]:
         path
         for room in rooms
         for path in (
-            [ROOT / PACKAGE / room]
-            if room.endswith('.py')
-            else sorted((ROOT / PACKAGE / room).rglob('*.py'))
+            [PACKAGE / room] if room.endswith('.py') else sorted((PACKAGE / room).rglob('*.py'))
         )
     ]
     return [path for path in found if path.name != '__init__.py' and path.is_file()]
-
-
-@dataclass(frozen=True)
-class Mutant:
-    """One changed place of a file."""
-
-    path: Path
-    tree: ast.Module  # unchanged
-    number: int  # of the node
-
-    def __str__(self) -> str:
-        """Return file and line, before and after."""
-        return f'{self.path.relative_to(ROOT / PACKAGE)}: ' + '  ->  '.join(
-            changed_line(self.tree, self.number)
-        )
 
 
 def choose(arguments: argparse.Namespace) -> list[Mutant]:
@@ -283,19 +343,76 @@ def choose(arguments: argparse.Namespace) -> list[Mutant]:
     return random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
 
 
-def _is_noticed(one: Mutant, stage: int, tests: Tests, verdicts: Counter[str]) -> bool:
-    """Tell whether one stage of the tests of its file notices a mutant; print and count how."""
-    start = time.monotonic()
-    verdict, _, name = tests.notice(
-        one.path, mutant(one.tree, one.number), tests_of(one.path)[stage]
-    ).partition(' ')
-    if verdict:
-        verdicts[verdict] += 1
-        print(
-            f'{verdict:8} {time.monotonic() - start:6.1f} s  {one}{name and "   by " + name}',
-            flush=True,
-        )
-    return bool(verdict)
+@dataclass(frozen=True)
+class Verdict:
+    """What one stage of the tests says of a mutant."""
+
+    one: Mutant
+    noticed: str
+    seconds: float
+    broken: set[str]
+
+
+class Worker:
+    """A process of its own that runs one stage of the tests on mutants.
+
+    Attributes:
+        tests: what the main process has recorded; a fork shares it.
+    """
+
+    tests: Tests
+
+    @classmethod
+    def start(cls, tests: Tests) -> None:
+        """Keep the tests."""
+        cls.tests = tests
+
+    @classmethod
+    def judge(cls, one: Mutant, stage: int) -> Verdict:
+        """Return what a stage says of a mutant."""
+        start = time.monotonic()
+        noticed = cls.tests.notice(one, cls.tests.of(one)[stage])
+        return Verdict(one, noticed, time.monotonic() - start, cls.tests.broken)
+
+
+def examine(chosen: list[Mutant], tests: Tests, stages: int) -> Counter[str]:
+    """Print how each mutant is noticed; return the number of each verdict.
+
+    For all mutants the tests of their own folders run first.
+    """
+    verdicts, living = Counter[str](), chosen
+    with ProcessPoolExecutor(None, FORK, Worker.start, (tests,)) as pool:
+        for stage in range(stages):
+            tasks = [pool.submit(Worker.judge, one, stage) for one in living]
+            living = []
+            for task in as_completed(tasks):
+                result = task.result()
+                tests.broken |= result.broken
+                verdict, _, name = result.noticed.partition(' ')
+                if verdict:
+                    verdicts[verdict] += 1
+                    by = name and f'   by {name}'
+                    print(f'{verdict:8} {result.seconds:6.1f} s  {result.one}{by}', flush=True)
+                else:
+                    living.append(result.one)
+    for one in living:
+        print(f'survived            {one}')
+    return verdicts
+
+
+def record_all(paths: Iterable[Path]) -> Tests:
+    """Return the tests that import files, after a run without any change."""
+    wanted = set(paths)
+    found = [str(test.relative_to(ROOT)) for test in test_files() if wanted & dependencies(test)]
+    print(f'{len(found)} files of tests without any change', flush=True)
+    shares = [share for start in range(SHARES) if (share := found[start::SHARES])]
+    records: dict[str, Record] = {}
+    imported: set[Function] = set()
+    with ProcessPoolExecutor(None, FORK) as pool:
+        for some, called in pool.map(record, shares):
+            records |= some
+            imported |= called
+    return Tests(records, frozenset(imported))
 
 
 def main() -> int:
@@ -328,14 +445,11 @@ def main() -> int:
     for name in OTHERS:
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
-    tests, verdicts, living = Tests(), Counter[str](), chosen
-    for stage in range(3 if arguments.own else 4):  # for all mutants the quick tests first
-        living = [one for one in living if not _is_noticed(one, stage, tests, verdicts)]
-    for one in living:
-        print(f'survived            {one}')
+    tests = record_all(one.path for one in chosen)
+    verdicts = examine(chosen, tests, stages=1 if arguments.own else 2)
     for name in sorted(tests.broken):
         print(f'left out, since it fails without any change: {name}')
-    noticed = len(chosen) - len(living)
+    noticed = verdicts.total()
     print(
         f'{noticed} of {len(chosen)} noticed: a test failed for {verdicts["failed"]}, '
         f'{verdicts["crashed"]} crashed, {verdicts["hung"]} hung'

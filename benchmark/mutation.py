@@ -2,12 +2,19 @@
 
 Left alone is what only asserts or only saves time and memory, where every mutant is equivalent:
 strict=True of zip, frozen=True and slots=True of a dataclass, and the size of a cache.
+
+Beside them, who reads what: a number outside functions counts where its name is read.
 """
 
 from __future__ import annotations
 
 import ast
 import copy
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+FUNCTION = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 OPPOSITE: dict[type[ast.AST], type[ast.AST]] = {
     ast.Add: ast.Sub,
@@ -105,3 +112,74 @@ def changed_line(tree: ast.Module, number: int) -> tuple[str, str]:
         for one, other in zip(before, after, strict=False)
         if one != other
     )
+
+
+@dataclass(frozen=True)
+class Part:
+    """A function, or a statement outside functions, with the names that it reads.
+
+    Attributes:
+        line: of the function, as its code object has it; 0: outside functions.
+        defined: what a statement outside functions gives a value.
+    """
+
+    path: Path
+    line: int
+    reads: frozenset[str]
+    defined: frozenset[str] = frozenset()
+
+
+def parts(path: Path, tree: ast.Module) -> Iterator[Part]:
+    """Yield all functions, and statements outside them, of a file."""
+    for node in ast.walk(tree):
+        if isinstance(node, FUNCTION):
+            yield Part(path, _line(node), _names(node))
+        elif isinstance(node, ast.Module | ast.ClassDef):
+            for one in node.body:
+                if isinstance(one, ast.Assign | ast.AnnAssign):
+                    yield Part(path, 0, _names(one), _defined(one))
+        if isinstance(node, ast.ClassDef):
+            yield Part(path, 0, _names(*node.bases, *node.decorator_list), frozenset({node.name}))
+
+
+def place_of(tree: ast.Module, number: int) -> tuple[int, frozenset[str]]:
+    """Return the line of the innermost function of a node; or else 0; and the names it defines.
+
+    A function defines its own name; a statement outside functions, those that it gives a value, and
+    the names of the classes around it.
+    """
+    wanted = list(ast.walk(tree))[number]
+    around = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, (*FUNCTION, ast.ClassDef, ast.Assign, ast.AnnAssign))
+        and any(one is wanted for one in ast.walk(node))
+    ]
+    functions = [node for node in around if isinstance(node, FUNCTION)]
+    if functions:
+        return _line(functions[-1]), frozenset({functions[-1].name})
+    return 0, frozenset().union(
+        *(
+            {node.name} if isinstance(node, ast.ClassDef) else _defined(node)
+            for node in around
+            if not isinstance(node, FUNCTION)
+        )
+    )
+
+
+def _line(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    return min(one.lineno for one in (node, *node.decorator_list))
+
+
+def _names(*nodes: ast.AST) -> frozenset[str]:
+    return frozenset(
+        one.id if isinstance(one, ast.Name) else one.attr
+        for node in nodes
+        for one in ast.walk(node)
+        if isinstance(one, ast.Name | ast.Attribute)
+    )
+
+
+def _defined(node: ast.Assign | ast.AnnAssign) -> frozenset[str]:
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    return _names(*targets)

@@ -79,14 +79,97 @@ def test_each_mutant_changes_one_place(mutation):
     ]
 
 
-def test_tests_of_the_files_own_folder_come_first(module):
-    path = ROOT / module.PACKAGE / 'sim/physics/bullet/contact_stiffness.py'
-    named, unit, engine, others = module.tests_of(path)
-    assert named == ['test/unit/sim/physics/bullet/test_contact_stiffness.py']
-    for level, own in (('unit', unit), ('engine', engine)):
-        assert own
-        assert all(Path(name).parts[1:-1] == (level, 'sim', 'physics', 'bullet') for name in own)
-    assert 'test/engine/gym/test_parallel.py' in others
+@pytest.mark.parametrize(
+    ('text', 'place'),
+    [
+        ('A = 2', (0, {'A'})),
+        ('A, B = 2, C', (0, {'A', 'B'})),
+        ('class C:\n    a: int = 2', (0, {'C', 'a'})),
+        ('def f(a=2):\n    pass', (1, {'f'})),
+        ('class C:\n    @cache\n    def f(self):\n        return lambda: 2', (2, {'f'})),
+        ('def f():\n    def g():\n        return 2', (2, {'g'})),
+    ],
+)
+def test_a_place_is_in_its_innermost_function_or_else_in_what_it_defines(mutation, text, place):
+    tree = ast.parse(text)
+    (number,) = mutation.places(tree)
+    assert mutation.place_of(tree, number) == place
+
+
+FRICTION_ROLLING = 'sim/physics/bullet/friction_rolling.py'
+ITS_TEST = 'test/unit/sim/physics/bullet/test_friction_rolling.py'
+OTHER_TEST = 'test/unit/sim/physics/bullet/test_friction_axes.py'
+
+
+@pytest.fixture
+def fresh_imports(monkeypatch):
+    """Let forks import the product anew, as those of the benchmark do."""
+    monkeypatch.chdir(ROOT)
+    loaded = {
+        name: sys.modules.pop(name)
+        for name in list(sys.modules)
+        if name.partition('.')[0] in ('rosbots_description', 'rosbots_simulator', 'test')
+    }
+    yield
+    sys.modules.update(loaded)
+
+
+@pytest.fixture
+def recorded(module, fresh_imports):
+    return module.record([ITS_TEST, OTHER_TEST])
+
+
+def files_of(names):
+    return {name.partition('::')[0] for name in names}
+
+
+def test_tests_that_call_its_function_can_notice_a_mutant(module, mutation, recorded):
+    tests = module.Tests(*recorded)
+    path = module.PACKAGE / FRICTION_ROLLING
+    tree = ast.parse(path.read_bytes())
+    in_function, constant = (
+        next(
+            module.Mutant(path, tree, number)
+            for number in mutation.places(tree)
+            if mutation.place_of(tree, number)[1] == {name}
+        )
+        for name in ('rolling_arm', '_ROLLING_RESISTANCE')
+    )
+    own, others = tests.of(in_function)
+    assert len(own) == 3
+    assert files_of(own) == {ITS_TEST}
+    assert others == []
+    assert tests.of(constant) == (own, [])
+
+
+def test_calls_of_shared_fixtures_count_for_their_users_and_of_imports_for_nobody(
+    module, fresh_imports, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(module, 'ROOT', tmp_path.resolve())
+    monkeypatch.chdir(tmp_path)
+    Path('test_it.py').write_text(
+        'import pytest\n\n'
+        'def imported(): return 1\n'
+        'def shared(): return 1\n'
+        'ONE = imported()\n'
+        "@pytest.fixture(scope='module')\n"
+        'def fixture(): return shared()\n'
+        'def test_first(fixture): pass\n'
+        'def test_second(fixture): pass\n'
+        'def test_other(): assert 0\n'
+    )
+    records, imported = module.record(['test_it.py'])
+    named = {name.rpartition('::')[2]: record for name, record in records.items()}
+    path = str((tmp_path / 'test_it.py').resolve())
+    assert [name for name, one in named.items() if (path, 4) in one.calls] == [
+        'test_first',
+        'test_second',
+    ]
+    assert (path, 3) in imported
+    assert [name for name, one in named.items() if one.failed] == ['test_other']
+    assert module.Tests(records, imported).broken == {
+        name for name in records if name.endswith('test_other')
+    }
 
 
 def test_every_room_has_mutants(module, mutation):
@@ -94,46 +177,40 @@ def test_every_room_has_mutants(module, mutation):
         assert any(mutation.places(ast.parse(path.read_bytes())) for path in module.files([room]))
 
 
-FRICTION_ROLLING = 'sim/physics/bullet/friction_rolling.py'
-ITS_TEST = 'test/unit/sim/physics/bullet/test_friction_rolling.py'
-
-
 @pytest.fixture
-def notice(module, monkeypatch):
+def notice(module, fresh_imports):
     """Return how a test notices that a file of the product is changed."""
-    monkeypatch.chdir(ROOT)
-    loaded = {
-        name: sys.modules.pop(name)
-        for name in list(sys.modules)
-        if name.partition('.')[0] in ('rosbots_description', 'rosbots_simulator', 'test')
-    }
-    path = ROOT / module.PACKAGE / FRICTION_ROLLING
+    path = module.PACKAGE / FRICTION_ROLLING
     before = path.read_bytes()
-    yield lambda change, tests, name=ITS_TEST: tests.notice(
+    yield lambda change, tests, name: tests.notice_change(
         path, ast.parse(change(before.decode())), [name]
     )
     assert path.read_bytes() == before
-    sys.modules.update(loaded)
+
+
+NAME = f'{ITS_TEST}::test_only_parts_of_cylinders_alone_have_it_and_the_widest_counts'
 
 
 @pytest.mark.parametrize(
     ('change', 'verdict'),
     [
         (lambda text: text, ''),
-        (lambda text: text.replace('0.005', '0.01'), f'failed {ITS_TEST}::'),
+        (lambda text: text.replace('0.005', '0.01'), f'failed {NAME}'),
         (lambda _: 'import os\nos.abort()', 'crashed'),
         (lambda _: 'import os, signal\nos.kill(os.getpid(), signal.SIGXCPU)', 'hung'),
     ],
 )
 def test_a_mutant_is_noticed_by_a_test_that_fails_crashes_or_hangs(module, notice, change, verdict):
-    tests = module.Tests()
-    assert notice(change, tests).startswith(verdict)
-    assert bool(verdict) == bool(notice(change, tests))
+    tests = module.Tests({}, frozenset())
+    assert notice(change, tests, NAME) == verdict
+    assert notice(change, tests, NAME) == verdict
 
 
-def test_a_test_that_fails_without_a_change_notices_nothing(module, notice, tmp_path):
-    broken = tmp_path / 'test_broken.py'
-    broken.write_text('def test_it():\n    assert False\n')
-    tests = module.Tests()
-    assert notice(lambda text: text.replace('0.005', '0.01'), tests, str(broken)) == ''
-    assert len(tests.broken) == 1
+def test_a_test_that_fails_without_a_change_notices_nothing(module, notice, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, 'ROOT', tmp_path)
+    monkeypatch.chdir(tmp_path)
+    Path('test_broken.py').write_text('def test_it():\n    assert False\n')
+    tests = module.Tests({}, frozenset())
+    name = 'test_broken.py::test_it'
+    assert notice(lambda text: text.replace('0.005', '0.01'), tests, name) == ''
+    assert tests.broken == {name}
