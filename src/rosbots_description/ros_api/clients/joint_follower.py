@@ -16,14 +16,14 @@ import rospy
 from joint_state_publisher import JointStatePublisher
 from sensor_msgs.msg import JointState
 
-from ..transport import sender_of
+from ..transport import init_node, sender_of
 
 NAME = 'joint_state_publisher'
 
 
 def main() -> int:
     """Publish until shutdown; return an exit code."""
-    rospy.init_node(NAME)
+    init_node(NAME, sys.argv[1:])
     try:
         joints = JointStatePublisher()
     except RuntimeError as error:  # there is no robot_description
