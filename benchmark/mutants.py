@@ -22,6 +22,7 @@ import contextlib
 import faulthandler
 import importlib
 import math
+import mmap
 import multiprocessing
 import os
 import pickle
@@ -58,6 +59,7 @@ ROOMS = (
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
 # A test that takes as long hangs, which counts as noticed. The slowest takes 20 s of the processor.
 HOPELESS_CPU, HOPELESS_WALL = 120, 1800  # [s]
+LONGEST_NAME = 4096  # [bytes] of a test
 SHARES = 16  # of the files that run without any change; a process at a time takes one
 # What tests import besides the product; all forks share it.
 OTHERS = (
@@ -110,6 +112,7 @@ class Selection:
 
     def __init__(self, tests: list[str]) -> None:
         self.failed: list[str] = []
+        self._running = mmap.mmap(-1, LONGEST_NAME)  # shared with forks
         self._order = {name: place for place, name in enumerate(tests)}
 
     @pytest.hookimpl(trylast=True)  # type: ignore[untyped-decorator]
@@ -118,8 +121,14 @@ class Selection:
         items[:] = [item for item in items if item.nodeid in self._order]
         items.sort(key=lambda item: self._order[item.nodeid])
 
-    def pytest_runtest_setup(self) -> None:
+    @property
+    def running(self) -> str:
+        """Return the name of the test that runs, or ran last, in this process or in a fork."""
+        return self._running[:].rstrip(b'\0').decode()
+
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
         """Limit the time of each test."""
+        self._running[:] = item.nodeid.encode().ljust(LONGEST_NAME, b'\0')
         _limit_time()
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -190,21 +199,20 @@ class Tests:
     def notice_change(self, path: Path, changed: ast.Module, tests: list[str]) -> str:
         """Return how tests notice that a file has another content, or '' if they do not."""
         while left := [name for name in tests if name not in self.broken]:
-            failed, verdict = _run_tests(left, path, changed)
+            verdict, blamed = _run_tests(left, path, changed)
             if not verdict:
                 return ''
-            blamed = failed[:1] or left
-            if self._is_sound(blamed):
-                return ' '.join((verdict, *failed[:1]))
-            if blamed[0] not in left or not failed:
-                raise SystemExit(f'{verdict} without any change, too: {" ".join(blamed)}')
-            self.broken.add(blamed[0])
+            if self._is_sound([blamed] if blamed else left):
+                return f'{verdict} {blamed}'.rstrip()
+            if blamed not in left:
+                raise SystemExit(f'{verdict} without any change, too: {blamed or left}')
+            self.broken.add(blamed)
         return ''
 
     def _is_sound(self, tests: list[str]) -> bool:
         """Tell whether tests pass without any change."""
         called = ' '.join(tests)
-        if called not in self._sound and not _run_tests(tests)[1]:
+        if called not in self._sound and not _run_tests(tests)[0]:
             self._sound.add(called)
         return called in self._sound
 
@@ -216,18 +224,18 @@ def _folder(name: str) -> tuple[str, ...]:
 
 def _run_tests(
     tests: list[str], path: Path | None = None, changed: ast.Module | None = None
-) -> tuple[list[str], str]:
+) -> tuple[str, str]:
     """Run tests up to the first that fails, with another content of a file if given.
 
     Returns:
-        what failed; and 'failed', 'hung', 'crashed', or '' if all tests passed.
+        'failed', 'hung', 'crashed', or '' if all tests passed; and which test, '' if none ran.
     """
+    selection = Selection(tests)
 
     def run() -> list[str]:
         _limit_time()
         if path and changed:
             _replace(path, changed)
-        selection = Selection(tests)
         files = dict.fromkeys(name.partition('::')[0] for name in tests)
         if code := _run_pytest(selection, '-x', *files):
             selection.failed.append(code)
@@ -235,8 +243,9 @@ def _run_tests(
 
     failed, status = in_fork(run)
     if failed is None:
-        return [], ('hung' if -status in (signal.SIGALRM, signal.SIGXCPU) else 'crashed')
-    return failed, 'failed' if failed else ''
+        verdict = 'hung' if -status in (signal.SIGALRM, signal.SIGXCPU) else 'crashed'
+        return verdict, selection.running
+    return ('failed', failed[0]) if failed else ('', '')
 
 
 def record(tests: list[str]) -> tuple[dict[str, Record], frozenset[Function]]:
@@ -381,7 +390,11 @@ def examine(chosen: list[Mutant], tests: Tests, stages: int) -> Counter[str]:
     For all mutants the tests of their own folders run first.
     """
     verdicts, living = Counter[str](), chosen
-    with ProcessPoolExecutor(None, FORK, Worker.start, (tests,)) as pool:
+    with (
+        ProcessPoolExecutor(None, FORK, Worker.start, (tests,)) as pool,
+        contextlib.ExitStack() as at_end,
+    ):
+        at_end.callback(pool.shutdown, cancel_futures=True)  # also after a fault
         for stage in range(stages):
             tasks = [pool.submit(Worker.judge, one, stage) for one in living]
             living = []

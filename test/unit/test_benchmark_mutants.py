@@ -197,6 +197,7 @@ NAME = f'{ITS_TEST}::test_only_parts_of_cylinders_alone_have_it_and_the_widest_c
         (lambda text: text, ''),
         (lambda text: text.replace('0.005', '0.01'), f'failed {NAME}'),
         (lambda _: 'import os\nos.abort()', 'crashed'),
+        (lambda text: text.replace('return _', 'import os; os.abort(); _'), f'crashed {NAME}'),
         (lambda _: 'import os, signal\nos.kill(os.getpid(), signal.SIGXCPU)', 'hung'),
     ],
 )
