@@ -14,6 +14,7 @@ from rosbots_description.sim.rendering.gl.cameras import (
     view_corners,
 )
 from rosbots_description.sim.rendering.gl.context import open_context
+from rosbots_description.sim.rendering.gl.drawable import Frame
 from rosbots_description.sim.rendering.gl.renderer import Renderer
 from rosbots_description.sim.rendering.gl.shadows import Sweeps
 from rosbots_description.sim.rendering.gl.values import (
@@ -41,10 +42,8 @@ class Box:
         return float(np.linalg.norm(self.half))
 
     @property
-    def corners(self):
-        return self.middle + self.half * [
-            [x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)
-        ]
+    def arms(self):
+        return np.diag(self.half)
 
 
 @pytest.fixture
@@ -75,6 +74,21 @@ def test_rectangles_hold_all_shadows_on_the_ground_that_a_camera_sees(boxes, pit
         held |= (column >= left) & (column <= left + width) & (row >= top) & (row <= top + height)
     assert held[seen].all()
     assert seen.any() or pitch < 0.0
+
+
+@pytest.mark.parametrize('pitch', [-0.2, 0.1, 0.6, 1.5])
+def test_what_casts_a_shadow_that_a_camera_sees_is_seen(boxes, pitch):
+    eye = matrices(np.array([[0.0, 0.0, 0.5, *from_rpy(0.0, pitch, 0.4)]]))[0]
+    lens = Lens(*SIZE, 1.0, 0.1, 100.0)
+    frame = Frame(lens, eye, projection(lens) @ camera_view(eye), np.zeros((0, 4, 4)))
+    sweeps = Sweeps(boxes, LIGHT, 0.0)
+    seen = {id(one) for one in sweeps.seen(frame.planes)}
+    unseen = [box for box in boxes if id(box) not in seen]
+    points = points_of(unseen) if unseen else np.zeros((0, 3))
+    for share in (0.0, 0.3, 1.0):
+        fallen = points - share * points[:, 2:] / LIGHT[2] * LIGHT
+        assert not ((fallen @ frame.planes[:, :3].T + frame.planes[:, 3]) > 0.0).all(axis=1).any()
+    assert 0 < len(unseen) < len(boxes)
 
 
 def test_a_shadow_reaches_the_sphere_into_which_it_falls(boxes):

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .shaders import DEPTH_FRAGMENT, NOTHING_FRAGMENT, PLACED_VERTEX, ShaderVariant
-from .shadows import Sweeps, uniform
+from .shadows import Rectangles, uniform
 from .values import Appearance, Lens, ScenePart
 
+_TOUCHING = 1e-5  # [m] the GPU's positions have seven digits
 _BLUR = 0.1  # [m] by which shadow maps may widen shadows
-_CORNERS = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3), axis=-1).reshape(8, 3)  # of a cube
 LAYOUT = {'position': 3, 'normal': 3, 'texcoord': 2}  # floats of a vertex
 
 
@@ -28,14 +28,19 @@ class Frame:
         self.lens, self.eye, self.view, self.bodies = lens, eye, view, bodies
         rows = view[3] + np.array([view[0], -view[0], view[1], -view[1], view[2]])
         self.planes = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
-        self.shadows: dict[str, Sweeps] = {}  # by map
-        self.shadowed: dict[Drawable, tuple[str, ...]] = {}  # maps whose shadows may fall on it
+        self.shadowed: dict[Drawable, dict[str, Rectangles]] = {}  # by maps of what falls on it
         self.prepared: set[ShaderVariant] = set()  # whose programs are set for this picture
 
-    def sees(self, middles: NDArray[Any], radii: NDArray[Any]) -> NDArray[np.bool_]:
-        """Tell which bounding spheres, (n, 3) and (n,) [m], reach into the view frustum."""
+    def sees(self, middles: NDArray[Any], arms: NDArray[Any]) -> NDArray[np.bool_]:
+        """Tell which boxes reach into the view frustum.
+
+        Args:
+            middles: of the boxes (n, 3) [m].
+            arms: from there to three of their sides, as columns (n, 3, 3) [m].
+        """
         heights = middles @ self.planes[:, :3].T + self.planes[:, 3]
-        seen: NDArray[np.bool_] = (heights > -radii[:, None]).all(axis=1)
+        reach = np.abs(self.planes[:, :3] @ arms).sum(axis=2)
+        seen: NDArray[np.bool_] = (heights > -_TOUCHING - reach).all(axis=1)
         return seen
 
     def distance(self, drawable: 'Drawable') -> float:
@@ -113,11 +118,9 @@ class Drawable:
         return self.middle, self._axes[:, flat] / np.linalg.norm(self._axes[:, flat])
 
     @property
-    def corners(self) -> NDArray[Any]:
-        """Return those of a box around it, with room for blurred shadows (8, 3) [m]."""
-        lengths = np.linalg.norm(self._axes, axis=0)
-        half = self.half + _BLUR / lengths
-        return np.asarray(self.middle + (_CORNERS * half) @ self._axes.T)
+    def arms(self) -> NDArray[Any]:
+        """Return the ways (3, 3) [m] from its middle to three sides of a box; see `Caster`."""
+        return np.asarray(self._axes * (self.half + _BLUR / np.linalg.norm(self._axes, axis=0)))
 
     def draw(self, variant: ShaderVariant, program: moderngl.Program) -> None:
         """Draw the surface in its colours."""
@@ -164,20 +167,20 @@ class Placements:
         self._bodies = [one.part.body for one in drawables]
         self._matrices = np.array([one.matrix for one in drawables]).reshape(-1, 4, 4)
         self._middles = np.array([one.own_middle for one in drawables]).reshape(-1, 3, 1)
-        self._halves = np.array([one.half for one in drawables]).reshape(-1, 3)
-        self._radii = np.array([one.radius for one in drawables])
+        self._halves = np.array([one.half for one in drawables]).reshape(-1, 1, 3)
 
     def place(self, frame: Frame) -> None:
         """Place the drawables for a picture, and find those that it may see."""
         bodies = frame.bodies[self._bodies]
         placed = bodies @ self._matrices
         middles = (placed[:, :3, :3] @ self._middles)[:, :, 0] + placed[:, :3, 3]
-        lows = middles[:, 2] - (np.abs(placed[:, 2, :3]) * self._halves).sum(axis=1)
+        arms = placed[:, :3, :3] * self._halves
+        lows = middles[:, 2] - np.abs(arms[:, 2]).sum(axis=1)
         for one, *where in zip(
             self.drawables, placed, bodies[:, :3, :3], middles, lows.tolist(), strict=True
         ):
             one.place(*where)
-        seen = np.flatnonzero(frame.sees(middles, self._radii))
+        seen = np.flatnonzero(frame.sees(middles, arms))
         frame.visible = [self.drawables[number] for number in seen.tolist()]
 
 

@@ -124,19 +124,33 @@ class Renderer:
             Sweeps(some, shadows.direction, low).seen(frame.planes)
             for some in (self._still_casters, self._moving_casters)
         ]
-        near = shadows.draw(frame.eye, frame.lens, self._still_casters, seen[1])
-        frame.shadows = {
+        near = shadows.near(frame.eye, frame.lens, seen[1])
+        sweeps = {
             name: Sweeps(some, shadows.direction, low)
             for name, some in (('still', seen[0]), ('moving', near))
             if some
         }
         middles = np.array([one.middle for one in frame.visible]).reshape(-1, 3)
         radii = np.array([one.radius for one in frame.visible])
-        reached = {name: sweeps.reach(middles, radii) for name, sweeps in frame.shadows.items()}
-        frame.shadowed = {
-            one: tuple(name for name, those in reached.items() if those[number])
-            for number, one in enumerate(frame.visible)
-        }
+        reached = {name: some.reach(middles, radii) for name, some in sweeps.items()}
+        size = frame.lens.width, frame.lens.height
+        for number, one in enumerate(frame.visible):
+            plane = one.plane
+            everywhere = [(0, 0, *size)]
+            parts = {
+                name: sweeps[name].rectangles(plane, frame.view, size) if plane else everywhere
+                for name, those in reached.items()
+                if those[number]
+            }
+            frame.shadowed[one] = {name: some for name, some in parts.items() if some}
+        # A map that nothing in the picture reads is not drawn.
+        read = {name for parts in frame.shadowed.values() for name in parts}
+        shadows.draw(
+            frame.eye,
+            frame.lens,
+            self._still_casters if 'still' in read else (),
+            near if 'moving' in read else (),
+        )
 
     def _drop(self, kept: dict[str, Any], used: set[str]) -> None:
         for key in [key for key in kept if key not in used]:
@@ -213,13 +227,12 @@ class Renderer:
     def _draw_surface(self, drawable: Drawable, frame: Frame) -> None:
         """Draw a surface; reading a shadow map costs time, so only where shadows may fall."""
         self._cull(drawable)
-        maps = frame.shadowed.get(drawable, ())
-        plane = drawable.plane
-        if plane is not None:
+        parts = frame.shadowed.get(drawable, {})
+        maps = tuple(parts)
+        if drawable.plane is not None:
             # Rectangles with shadows first: depths keep what was drawn there.
-            size = frame.lens.width, frame.lens.height
             while maps:
-                for rectangle in frame.shadows[maps[-1]].rectangles(plane, frame.view, size):
+                for rectangle in parts[maps[-1]]:
                     self._context.scissor = rectangle
                     self._draw_with(maps, drawable, frame)
                 maps = maps[:-1]

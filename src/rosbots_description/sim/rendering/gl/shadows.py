@@ -7,6 +7,7 @@ drawn before.
 """
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any, Protocol, cast
 
 import moderngl
@@ -24,9 +25,12 @@ _CELL = 2.0 * (_ROOM - 1.0) / 3.0**0.5  # relative edge of the cells that share 
 _MAX_MAPS = 4  # of still bodies, for cameras of different views
 _MAX_SHADOW_DISTANCE = 30.0  # [m] from its caster
 _CLOSE = 0.01  # [m] along the optical axis
+_CORNERS = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3), axis=-1).reshape(8, 3)  # of a cube
 _GRAZING = 1e-3  # sine of an angle between light and plane
 _MOST_RECTANGLES = 16
 _MARGIN = 8  # [texels] beyond what is seen: surfaces read the map up to 6 texels beside them
+
+Rectangles = list[tuple[int, int, int, int]]  # parts of a picture: x, y, width, height [pixels]
 
 
 def uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
@@ -41,15 +45,18 @@ class Caster(Protocol):
     radius: float
 
     @property
-    def corners(self) -> NDArray[Any]:
-        """Return those of a box around it and its blurred edges (8, 3) [m]."""
+    def arms(self) -> NDArray[Any]:
+        """Return the ways (3, 3) [m], as columns, from the middle to three sides of a box.
+
+        The box holds the caster, with room for the blurred edges of its shadow.
+        """
 
     def draw_shadow(self) -> None:
         """Draw it into the shadow map."""
 
 
 class Sweeps:
-    """Where the shadows of casters fall: their bounding spheres, swept along the light."""
+    """Where the shadows of casters fall: boxes or spheres around them, swept along the light."""
 
     def __init__(self, casters: Sequence[Caster], light: NDArray[Any], low: float) -> None:
         """Take casters, the light's direction, and the height below which there is nothing [m]."""
@@ -60,13 +67,17 @@ class Sweeps:
         if light[2] < 0.0:
             lengths = np.minimum(lengths, (self._middles[:, 2] + self._radii - low) / -light[2])
         self._lengths, self._light = lengths, light
-        self._corners: NDArray[Any] | None = None  # of the casters, once they were needed
+
+    @cached_property
+    def _arms(self) -> NDArray[Any]:
+        return np.array([one.arms for one in self.casters]).reshape(-1, 3, 3)
 
     def seen(self, planes: NDArray[Any]) -> list[Caster]:
         """Return the casters whose shadows reach into a view frustum of planes (n, 4)."""
         begin = self._middles @ planes[:, :3].T + planes[:, 3]
         end = begin + self._lengths[:, None] * (planes[:, :3] @ self._light)
-        inside = (np.maximum(begin, end) > -self._radii[:, None]).all(axis=1)
+        reach = np.abs(planes[:, :3] @ self._arms).sum(axis=2)
+        inside = (np.maximum(begin, end) > -reach).all(axis=1)
         return [one for one, is_seen in zip(self.casters, inside, strict=True) if is_seen]
 
     def reach(self, middles: NDArray[Any], radii: NDArray[Any]) -> NDArray[np.bool_]:
@@ -79,8 +90,8 @@ class Sweeps:
 
     def rectangles(
         self, plane: tuple[NDArray[Any], NDArray[Any]], view: NDArray[Any], size: tuple[int, int]
-    ) -> list[tuple[int, int, int, int]]:
-        """Return parts of a picture that hold all shadows on a plane: x, y, width, height [pixels].
+    ) -> Rectangles:
+        """Return parts of a picture that hold all shadows on a plane.
 
         Args:
             plane: a point and the normal.
@@ -91,9 +102,7 @@ class Sweeps:
         slant = float(self._light @ normal)
         if abs(slant) < _GRAZING or len(self.casters) > _MOST_RECTANGLES:
             return [(0, 0, *size)]
-        if self._corners is None:
-            self._corners = np.stack([one.corners for one in self.casters])
-        corners = self._corners  # (c, 8, 3)
+        corners = self._middles[:, None] + _CORNERS @ self._arms.transpose(0, 2, 1)  # (c, 8, 3)
         way = ((point - corners) @ normal) / slant
         shadow = (corners + way[:, :, None] * self._light) @ view[:, :3].T + view[:, 3]
         # Where an edge from one corner to another goes behind the camera, it ends there.
@@ -147,10 +156,22 @@ class Shadows:
         for one in self._still.values():
             one.place = None
 
+    def near(self, eye: NDArray[Any], lens: Lens, moving: Sequence[Caster]) -> list[Caster]:
+        """Return the moving casters that are near enough to a camera."""
+        middle, radius = frustum_sphere(eye, lens)
+        return [one for one in moving if np.linalg.norm(one.middle - middle) < radius + one.radius]
+
     def draw(
-        self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster], moving: Sequence[Caster]
-    ) -> list[Caster]:
-        """Update the maps for a camera's picture; return the moving casters that matter to it."""
+        self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster], near: Sequence[Caster]
+    ) -> None:
+        """Update the maps of casters for a camera's picture; without casters, there is no map."""
+        self._used = {}
+        if still:
+            self._used['still'] = self._draw_still(eye, lens, still)
+        if near:
+            self._used['moving'] = self._draw_moving(eye, lens, near)
+
+    def _draw_still(self, eye: NDArray[Any], lens: Lens, still: Sequence[Caster]) -> '_Map':
         middle, radius = frustum_sphere(eye, lens)
         if radius not in self._still:
             if len(self._still) == _MAX_MAPS:
@@ -161,20 +182,17 @@ class Shadows:
         if still_map.place is None or (still_map.place != cell).any():
             still_map.place = cell
             still_map.draw(self._program, self._axes, cell * _CELL * radius, radius * _ROOM, still)
-        near = [one for one in moving if np.linalg.norm(one.middle - middle) < radius + one.radius]
-        self._used = {'still': still_map}
-        if near:
-            centre, reach = _bounding_sphere(near)
-            size = next(
-                (size for size in MOVING_SIZES if 2.0 * reach < size * _FINE), MOVING_SIZES[-1]
-            )
-            if size not in self._moving:
-                self._moving[size] = _Map(self._context, size)
-            self._moving[size].draw(
-                self._program, self._axes, centre, reach, near, view_corners(eye, lens)
-            )
-            self._used['moving'] = self._moving[size]
-        return near
+        return still_map
+
+    def _draw_moving(self, eye: NDArray[Any], lens: Lens, near: Sequence[Caster]) -> '_Map':
+        centre, reach = _bounding_sphere(near)
+        size = next((size for size in MOVING_SIZES if 2.0 * reach < size * _FINE), MOVING_SIZES[-1])
+        if size not in self._moving:
+            self._moving[size] = _Map(self._context, size)
+        self._moving[size].draw(
+            self._program, self._axes, centre, reach, near, view_corners(eye, lens)
+        )
+        return self._moving[size]
 
     def use(self, program: moderngl.Program) -> None:
         """Bind the maps to a program."""
