@@ -145,7 +145,7 @@ def test_tests_that_call_its_function_can_notice_a_mutant(module, mutation, reco
 def test_calls_of_shared_fixtures_count_for_their_users_and_of_imports_for_nobody(
     module, fresh_imports, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(module, 'ROOT', tmp_path.resolve())
+    monkeypatch.setattr('trials.ROOT', tmp_path.resolve())
     monkeypatch.chdir(tmp_path)
     Path('test_it.py').write_text(
         'import pytest\n\n'
@@ -208,7 +208,7 @@ def test_a_mutant_is_noticed_by_a_test_that_fails_crashes_or_hangs(module, notic
 
 
 def test_a_test_that_fails_without_a_change_notices_nothing(module, notice, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, 'ROOT', tmp_path)
+    monkeypatch.setattr('trials.ROOT', tmp_path)
     monkeypatch.chdir(tmp_path)
     Path('test_broken.py').write_text('def test_it():\n    assert False\n')
     tests = module.Tests({}, frozenset())
