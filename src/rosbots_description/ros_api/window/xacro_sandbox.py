@@ -5,6 +5,7 @@ the system's files, the ROS packages and the upload to read, nothing to write, n
 other processes and none of the user's environment, and ends at limits of time, memory and output.
 """
 
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -51,7 +52,7 @@ def expanded(name: str, content: bytes) -> bytes:
     with tempfile.TemporaryDirectory(prefix='gzweb-') as folder:
         file = Path(folder, 'upload.xacro')
         file.write_bytes(content)
-        command = _sandbox([*folders, *sys.path, sys.prefix, sys.base_prefix])
+        command = _sandbox([*folders, _library(), sys.prefix, sys.base_prefix])
         command += ['--ro-bind', folder, UPLOAD, '--chdir', UPLOAD, '--remount-ro', '/']
         command += ['prlimit', f'--cpu={PROCESSOR_TIME}', f'--as={MEMORY}']
         command += [f'--nproc={PROCESSES}', f'--fsize={MAX_XML_BYTES}', '--core=0']
@@ -104,6 +105,17 @@ def _unusable() -> str:
     return f'bwrap does not work here ({said[0] if said else ended.returncode})'
 
 
+def _library() -> str:
+    """Return the folder from which xacro imports this package; others it has of the interpreter.
+
+    Not this process's folders of modules: one of them is that of the user's script, with all else
+    that is there.
+    """
+    spec = importlib.util.find_spec('rosbots_simulator')
+    assert spec is not None and spec.origin is not None
+    return os.path.dirname(os.path.dirname(spec.origin))
+
+
 def _sandbox(folders: Iterable[str]) -> list[str]:
     """Return the command line of a sandbox that shows some folders besides the system's own."""
     made = ['bwrap', '--unshare-all', '--die-with-parent', '--new-session', '--clearenv']
@@ -113,7 +125,7 @@ def _sandbox(folders: Iterable[str]) -> list[str]:
         'LANG': 'C.UTF-8',
         'HOME': '/',
         'ROS_HOME': '/',
-        'PYTHONPATH': os.pathsep.join(filter(os.path.isabs, sys.path)),
+        'PYTHONPATH': _library(),
         **{name: os.environ[name] for name in VARIABLES if name in os.environ},
     }
     for name, value in environment.items():
