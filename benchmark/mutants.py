@@ -20,6 +20,7 @@ import contextlib
 import multiprocessing
 import os
 import random
+import signal
 import sys
 import time
 from collections import Counter
@@ -274,6 +275,8 @@ def main() -> int:
     parser.add_argument('folders', nargs='*', default=ROOMS, help='of the package')
     arguments = parser.parse_args()
     chosen = choose(arguments)
+    # Shells start what they put in the background with it ignored, but tests send it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     os.chdir(ROOT)
     import_others()
     tests = record_all(one.path for one in chosen)
