@@ -118,8 +118,7 @@ def run_tests(
         if path and changed:
             _replace(path, changed)
         files = dict.fromkeys(name.partition('::')[0] for name in tests)
-        if code := _run_pytest(selection, '-x', *files):
-            selection.failed.append(code)
+        _run_pytest(selection, '-x', *files)
         return selection.failed
 
     failed, status = in_fork(run)
@@ -190,16 +189,16 @@ def _replace(path: Path, changed: ast.Module) -> None:
     SourceFileLoader.get_code = get_changed  # type: ignore[method-assign, assignment]
 
 
-def _run_pytest(plugin: object, *arguments: str) -> str:
-    """Run pytest; return why it ended before all tests were run, or ''."""
+def _run_pytest(plugin: object, *arguments: str) -> None:
+    """Run pytest; raise SystemExit if it ended before all tests were run, other than by -x."""
     sys.dont_write_bytecode = True
     code = pytest.main(
         ['-q', f'--rootdir={ROOT}', '-p', 'no:cacheprovider', '-p', 'no:xdist', *arguments],
         plugins=[plugin],
     )
-    expected = (
+    if code not in (
         pytest.ExitCode.OK,
         pytest.ExitCode.TESTS_FAILED,
         pytest.ExitCode.NO_TESTS_COLLECTED,
-    )
-    return '' if code in expected else f'pytest: exit code {int(code)}'
+    ):
+        raise SystemExit(code)

@@ -197,14 +197,13 @@ NAME = f'{ITS_TEST}::test_only_parts_of_cylinders_alone_have_it_and_the_widest_c
         (lambda text: text, ''),
         (lambda text: text.replace('0.005', '0.01'), f'failed {NAME}'),
         (lambda _: 'import os\nos.abort()', 'crashed'),
+        (lambda _: 'import pytest\npytest.exit(returncode=4)', 'crashed'),
         (lambda text: text.replace('return _', 'import os; os.abort(); _'), f'crashed {NAME}'),
         (lambda _: 'import os, signal\nos.kill(os.getpid(), signal.SIGXCPU)', 'hung'),
     ],
 )
 def test_a_mutant_is_noticed_by_a_test_that_fails_crashes_or_hangs(module, notice, change, verdict):
-    tests = module.Tests({}, frozenset())
-    assert notice(change, tests, NAME) == verdict
-    assert notice(change, tests, NAME) == verdict
+    assert notice(change, module.Tests({}, frozenset()), NAME) == verdict
 
 
 def test_a_test_that_fails_without_a_change_notices_nothing(module, notice, tmp_path, monkeypatch):
