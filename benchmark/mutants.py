@@ -46,6 +46,7 @@ ROOMS = (
     'gym/tasks',
 )
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
+STAGES = "by the tests of the file's own folder", 'by any unit or engine test'
 SHARES = 16  # of the files that run without any change; a process at a time takes one
 FORK = multiprocessing.get_context('fork')
 
@@ -229,6 +230,7 @@ def examine(chosen: list[Mutant], tests: Tests, stages: int) -> Counter[str]:
                     print(f'{verdict:8} {result.seconds:6.1f} s  {result.one}{by}', flush=True)
                 else:
                     living.append(result.one)
+            print(f'{len(living)} of {len(chosen)} not noticed {STAGES[stage]}', flush=True)
     for one in living:
         print(f'survived            {one}')
     return verdicts
@@ -280,7 +282,7 @@ def main() -> int:
     os.chdir(ROOT)
     import_others()
     tests = record_all(one.path for one in chosen)
-    verdicts = examine(chosen, tests, stages=1 if arguments.own else 2)
+    verdicts = examine(chosen, tests, stages=1 if arguments.own else len(STAGES))
     for name in sorted(tests.broken):
         print(f'left out, since it fails without any change: {name}')
     noticed = verdicts.total()

@@ -44,7 +44,7 @@ LONG = {
     'returns': 720.0,
     'mechanics': 600.0,
     'soak': 1530.0,
-    'mutants': 9000.0,
+    'mutants': 3600.0,
     'fuzz': 1800.0,
 }
 REMINDER = 30.0  # [s, wall] between two lines of progress where there is no terminal
