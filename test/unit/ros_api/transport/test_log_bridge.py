@@ -42,6 +42,20 @@ def test_a_warning_of_a_plugin_is_logged_once_until_it_is_forgotten(caplog):
     assert caplog.messages.count('<torque> is not read') == 2
 
 
+def test_a_level_is_set_by_its_name_in_any_case_and_another_name_is_ignored():
+    package = logging.getLogger('rosbots_description')
+    before = package.level
+    try:
+        for name in ('Debug', 'warn', 'FATAL', 'na'):
+            log_bridge.set_level(name)
+            assert package.level == {
+                'Debug': logging.DEBUG,
+                'warn': logging.WARNING,
+            }.get(name, logging.CRITICAL)
+    finally:
+        package.setLevel(before)
+
+
 @pytest.mark.parametrize('where', [{'severity': logging.ERROR}, {'element': "joint 'j'"}])
 def test_other_faults_are_logged_each_time(caplog, where):
     log, fault = FaultLog(), replace(Fault('bad', element="plugin 'drive'"), **where)
