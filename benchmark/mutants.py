@@ -47,6 +47,7 @@ ROOMS = (
 )
 SAMPLE, WANTED = 300, 0.9  # mutants, share of them that tests have to notice
 STAGES = "by the tests of the file's own folder", 'by any unit or engine test'
+SURVIVED = 'survived            '
 SHARES = 16  # of the files that run without any change; a process at a time takes one
 FORK = multiprocessing.get_context('fork')
 
@@ -161,15 +162,17 @@ def files(rooms: list[str]) -> list[Path]:
 def choose(arguments: argparse.Namespace) -> list[Mutant]:
     """Return the mutants that the arguments ask for."""
     kind = statements if arguments.lines else places
-    trees = {path: ast.parse(path.read_bytes()) for path in files(list(arguments.folders))}
+    paths = files(list(arguments.folders))
+    survivors: set[str] = set()
+    if arguments.again:
+        lines = arguments.again.read_text(encoding='utf-8').splitlines()
+        survivors = {line.removeprefix(SURVIVED) for line in lines if line.startswith(SURVIVED)}
+        named = {one.partition(': ')[0] for one in survivors}
+        paths = [path for path in paths if str(path.relative_to(PACKAGE)) in named]
+    trees = {path: ast.parse(path.read_bytes()) for path in paths}
     every = [Mutant(path, tree, number) for path, tree in trees.items() for number in kind(tree)]
     if arguments.again:
-        survivors = arguments.again.read_text(encoding='utf-8').splitlines()
-        return [
-            one
-            for one in every
-            if any(line.startswith('survived') and line.endswith(str(one)) for line in survivors)
-        ]
+        return [one for one in every if str(one) in survivors]
     print(f'{arguments.sample} of {len(every)} mutants, seed {arguments.seed}', flush=True)
     return random.Random(arguments.seed).sample(every, min(arguments.sample, len(every)))
 
@@ -232,7 +235,7 @@ def examine(chosen: list[Mutant], tests: Tests, stages: int) -> Counter[str]:
                     living.append(result.one)
             print(f'{len(living)} of {len(chosen)} not noticed {STAGES[stage]}', flush=True)
     for one in living:
-        print(f'survived            {one}')
+        print(f'{SURVIVED}{one}')
     return verdicts
 
 
