@@ -5,6 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from lxml import etree
+from support import LIBRARY
 
 from rosbots_description.gym.tasks.follow_line import FollowLine
 from rosbots_description.gym.tasks.go_to_goal import GoToGoal
@@ -25,7 +27,8 @@ class Stage:
     def place(self, pose):
         self.pose = pose
 
-    def place_freely(self, _random, *_ranges):
+    def place_freely(self, _random, *ranges):
+        self.ranges = ranges
         self.place(self.free.pop(0))
         return self.pose
 
@@ -184,8 +187,22 @@ def test_each_square_of_half_a_metre_is_rewarded_once():
     ):
         assert stands(task, x, y) == (reward, False)
     assert task.truth()['visited'] == 4 * 0.25
+    shown = {figure.pose.position[:2] for figure in task.figures()}
+    assert shown == {(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.5, -0.5)}
     task._stage.touches = True
     assert stands(task, 5.0, 5.0) == (-1.0, True)
+
+
+def test_wandering_starts_anywhere_between_the_outer_walls():
+    task = made(Wander)
+    task._stage.free = [(0.0, 0.0, 0.0)]
+    task.begin({})
+    rooms = etree.parse(LIBRARY / 'worlds' / 'rooms.world')
+    poses = rooms.iterfind('.//model[@name="walls"]//pose')
+    x, y = zip(*(map(float, pose.text.split()[:2]) for pose in poses), strict=True)
+    half = 0.075  # [m] of the walls' thickness
+    faces = ((min(x) + half, max(x) - half), (min(y) + half, max(y) - half))
+    assert np.array(task._stage.ranges) == pytest.approx(np.array(faces))
 
 
 def test_maze_rewards_what_the_way_has_become_shorter_and_10_outside():

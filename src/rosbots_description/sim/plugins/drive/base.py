@@ -30,7 +30,6 @@ class Drive(PeriodicPlugin):
     twist_variances: tuple[float, ...] = NO_VARIANCES
     topic_names: Mapping[str, str] = {'command': '<commandTopic>', 'odometry': '<odometryTopic>'}
     hints: Mapping[str, str] = {'torque': ' (the motor limit is <wheelTorque>)'}
-    target = (0.0, 0.0, 0.0)
 
     def read_frames(self, base: str) -> None:
         """Read the names of topics and frames; the robot's frame is `base` by default."""

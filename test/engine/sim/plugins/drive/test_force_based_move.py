@@ -11,19 +11,21 @@ MASS, INERTIA = 10.0, 2.0  # [kg], [kg m^2]
 GAIN, YAW_GAIN = 100.0, 40.0  # [N s/m], [N m s/rad]
 STEP = 0.001  # [s]
 YAW = 0.7  # of the spawn pose [rad]
+GAINS = (
+    f'<x_velocity_p_gain>{GAIN}</x_velocity_p_gain><y_velocity_p_gain>{GAIN}</y_velocity_p_gain>'
+    f'<yaw_velocity_p_gain>{YAW_GAIN}</yaw_velocity_p_gain>'
+)
 HECTOR, RIDGEBACK = 'gazebo_ros_force_based_move', 'ridgeback_ros_force_based_move'
 
 
-def box(library=HECTOR, base='base_link', tags=''):
+def box(library=HECTOR, base='base_link', tags='', gains=GAINS):
     """Return a model without gravity that only the plugin moves."""
     return load_urdf(
         f"""<robot name="box"><link name="base_link"><inertial><mass value="{MASS}"/>
         <inertia ixx="2" iyy="2" izz="{INERTIA}" ixy="0" ixz="0" iyz="0"/></inertial></link>
         <gazebo reference="base_link"><turnGravityOff>true</turnGravityOff></gazebo>
         <gazebo><plugin name="move" filename="lib{library}.so">
-        <robotBaseFrame>{base}</robotBaseFrame><x_velocity_p_gain>{GAIN}</x_velocity_p_gain>
-        <y_velocity_p_gain>{GAIN}</y_velocity_p_gain>
-        <yaw_velocity_p_gain>{YAW_GAIN}</yaw_velocity_p_gain>{tags}
+        <robotBaseFrame>{base}</robotBaseFrame>{gains}{tags}
         </plugin></gazebo></robot>""",
         'box',
     )[0]
@@ -54,6 +56,15 @@ def test_the_yaw_rate_approaches_the_command(world):
     model.plugin('move').command(0.0, 0.4)
     world.run(50)
     assert model.twist.angular[2] == pytest.approx(approached(0.4, YAW_GAIN, INERTIA, 50), rel=1e-5)
+
+
+def test_gains_have_upstreams_defaults(world):
+    model = world.spawn(box(gains=''), 'box', Pose((0.0, 0.0, 1.0)))
+    model.plugin('move').command(0.5, 0.4, 0.2)
+    world.run(1)
+    x, y = (approached(wanted, 10_000.0, MASS, 1) for wanted in (0.5, 0.2))
+    assert model.twist.linear == pytest.approx((x, y, 0.0), rel=1e-5)
+    assert model.twist.angular[2] == pytest.approx(approached(0.4, 100.0, INERTIA, 1), rel=1e-5)
 
 
 @pytest.mark.parametrize(

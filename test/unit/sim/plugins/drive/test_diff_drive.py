@@ -168,6 +168,16 @@ def test_disabled_output_does_not_exist(tag, gone):
     assert make(**tags).outputs.keys() - make(**(tags | {tag: 'false'})).outputs.keys() == gone
 
 
+def test_outputs_of_the_wheels_are_off_by_default():
+    assert make().outputs.keys() == {'odometry', 'odometry_transform'}
+
+
+def test_covariances_are_those_of_gazebo():
+    plugin = make()
+    assert plugin.pose_variances == (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
+    assert plugin.twist_variances == (0.0,) * 6
+
+
 def test_state_of_the_model_is_read_once_per_update():
     plugin = make(publishWheelTF='true', publishWheelJointState='true')
     for output in plugin.outputs.values():

@@ -45,9 +45,11 @@ def test_odometry_at_20_hz_has_a_period_of_51_ms():
     assert times == [51, 102, 153, 204]
 
 
-def test_rate_of_zero_disables_odometry():
-    plugin = make(odometryRate='0')
-    assert not plugin.outputs
+@pytest.mark.parametrize(
+    ('rate', 'outputs'), [('0', set()), ('0.5', {'odometry', 'odometry_transform'})]
+)
+def test_only_a_rate_of_zero_disables_odometry(rate, outputs):
+    assert make(odometryRate=rate).outputs.keys() == outputs
 
 
 def test_twist_is_the_difference_of_two_poses():

@@ -27,6 +27,10 @@ def test_all_tags_have_upstreams_defaults(caplog):
     assert 'TricycleDrive(ns = robot/): missing <wheelTorque> default is 5' in caplog.messages
 
 
+def test_odometry_and_its_transform_are_always_output():
+    assert make().outputs.keys() == {'odometry', 'odometry_transform'}
+
+
 @pytest.mark.parametrize('joint', JOINTS)
 def test_missing_joint_is_an_error(joint):
     with pytest.raises(PluginError, match=joint):
