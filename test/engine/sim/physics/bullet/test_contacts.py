@@ -8,6 +8,7 @@ from support import box_urdf, urdf_spec
 from support.scenes import link
 
 from rosbots_description.sim.core.transforms import Pose, Twist
+from rosbots_description.sim.physics.bullet.contacts import _to_triangles
 
 WEIGHT = 9.8
 TWO = (
@@ -64,6 +65,23 @@ def test_contacts_name_the_collisions_and_balance_the_weight(world):
     assert below[0].normal == pytest.approx((0.0, 0.0, -1.0))
     everywhere = world.engine.contacts()
     assert sorted(c.position for c in everywhere) == sorted(c.position for c in contacts)
+
+
+@pytest.mark.parametrize(
+    ('point', 'distance'),
+    [
+        ((1.0, 1.0, 0.5), 0.5),  # above the triangle
+        ((1.0, 2.0, -0.5), 0.5),  # below it
+        ((2.0, -1.0, 0.0), 1.0),  # beside an edge
+        ((3.0, 3.0, 0.0), math.sqrt(2.0)),  # beside the oblique edge
+        ((-3.0, -4.0, 0.0), 5.0),  # off a corner
+        ((9.0, 1.0, 1.0), 1.0),  # above the other triangle
+    ],
+)
+def test_distance_to_a_mesh_is_that_to_its_nearest_triangle(point, distance):
+    triangle = np.array([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)])
+    triangles = np.array([triangle, np.add(triangle, (8.0, 0.0, 0.0))])
+    assert _to_triangles(triangles, np.array(point)) == pytest.approx(distance)
 
 
 def test_wheels_and_caster_of_the_robot_carry_its_weight(world, robot):

@@ -188,3 +188,11 @@ def test_surface_of_mu_1_is_one_contact_part_and_others_are_two(world):
         if name != 'ground_plane'
     ]
     assert touching == [4, 4, 4]
+
+
+def test_a_factor_multiplies_the_mu_of_each_contact_part(world):
+    box = world.spawn(rough(0.5), 'box', Pose((0.0, 0.0, 0.05)))
+    world.engine.scale_friction(box.body, 'box', 0.4)
+    parts = box.body.surfaces['box']
+    found = [pybullet.getDynamicsInfo(*part, world.engine._client)[1] for part in parts]
+    assert sorted(found) == pytest.approx([0.4 * 0.5, 0.4 * 1.0])  # of its own mu, and of 1

@@ -5,6 +5,7 @@ from contextlib import closing
 
 import pytest
 from support import urdf_spec
+from support.fast_body import masses
 from support.scenes import GRAVITY, box
 
 from rosbots_description.sim.core.transforms import Pose, Twist
@@ -17,6 +18,7 @@ from rosbots_description.sim.description.model_spec import (
     ModelSpec,
 )
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
+from rosbots_description.sim.physics.bullet.springs import followed_damping, followed_stiffness
 from rosbots_description.sim.runtime.world import World
 
 HIGH = Pose((0.0, 0.0, 100.0))
@@ -188,3 +190,10 @@ def test_motion_after_a_reset_is_bit_identical(world):
     assert ways[0] == ways[1]
     world.delete('weight')
     world.run(10)
+
+
+@pytest.mark.parametrize('limited', [followed_stiffness, followed_damping])
+def test_a_body_of_four_times_the_mass_follows_four_times_the_stiffness_and_damping(limited):
+    body = masses(stiffness=1e15, damping=1e15)  # far too much for the step size
+    (once,), (scaled,) = limited(body, 0.002), limited(body.scaled(4.0), 0.002)
+    assert scaled == pytest.approx(4.0 * once)

@@ -2,6 +2,9 @@
 
 import pytest
 
+from rosbots_description.sim.core.transforms import IDENTITY, NO_ROTATION, Twist
+from rosbots_description.sim.physics.bullet.body import Body, FrictionAxes, Place
+from rosbots_description.sim.physics.bullet.friction_slip import SlippingLinks
 from rosbots_description.sim.physics.bullet.friction_slip_compliance import (
     MIN_SCALE,
     TyreContact,
@@ -86,3 +89,12 @@ def test_velocity_of_a_point_is_that_of_a_rigid_body():
     assert velocity_at(
         (1.0, 0.0, 2.0), (0.0, 0.0, 2.0), (0.1, 0.2, 0.3), (0.0, 0.0, 2.0)
     ) == pytest.approx((0.1, 2.2, 0.3))
+
+
+def test_a_tyre_whose_compliance_is_set_to_zero_has_its_described_friction():
+    place, body, scales = Place(1, -1), Body(0), []
+    body.surfaces['tyre'] = [place]
+    body.friction_axes[place] = FrictionAxes(NO_ROTATION, (1.0, 0.5, 0.7))
+    links = SlippingLinks(0, lambda _, found: scales.append(found), lambda _: 1.0)
+    links.update_friction(body, 'tyre', (IDENTITY, Twist()), AXLE, (0.0, 0.0), STEP)
+    assert scales == [(1.0, 0.5, 0.7)]
