@@ -20,10 +20,8 @@ Reading = TypeVar('Reading')
 class DueTimes:
     """The times t0 + k / rate, computed from the integer k, so that they never drift."""
 
-    _begin_ns = 0
-
-    def __init__(self, rate: float, what: str) -> None:
-        """Take a rate [Hz]; 0 or less means at every time.
+    def __init__(self, rate: float, what: str, now_ns: int) -> None:
+        """Begin at `now_ns` with a rate [Hz]; 0 or less means at every time.
 
         Raises:
             PluginError: the rate is too low; the message names `what`, e.g. '<updateRate>'.
@@ -34,6 +32,7 @@ class DueTimes:
                 'or 0 for every step'
             )
         self._period_ns = NANOSECONDS / rate if rate > 0.0 else 0.0
+        self.begin(now_ns)
 
     def begin(self, now_ns: int) -> None:
         """Set t0 to `now_ns`; the first time is one period later."""
@@ -83,7 +82,7 @@ class Sensor(SensorPart):
 
     def start(self) -> None:
         """Load and begin."""
-        self._times = DueTimes(self.spec.update_rate, '<update_rate>')
+        self._times = DueTimes(self.spec.update_rate, '<update_rate>', self.world.clock.now_ns)
         self.load()
         self.restart()
 
@@ -195,8 +194,7 @@ class SensorPlugin(ModelPlugin, Generic[Reading]):
 
     def restart(self) -> None:
         """Restart the schedule of readings at the current time."""
-        self._times = DueTimes(self.rate, f'<{self.rate_tag}>')
-        self._times.begin(self.world.clock.now_ns)
+        self._times = DueTimes(self.rate, f'<{self.rate_tag}>', self.world.clock.now_ns)
         self._wake()
         self.reset()
 

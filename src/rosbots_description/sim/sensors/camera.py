@@ -138,8 +138,7 @@ class CameraSensor(Sensor):
 
     def set_rate(self, rate: float) -> None:
         """Take pictures at this rate [Hz] from now on."""
-        self._times = DueTimes(rate, 'imager_rate')
-        self._times.begin(self.world.clock.now_ns)
+        self._times = DueTimes(rate, 'imager_rate', self.world.clock.now_ns)
         self.count_readers()
 
     def trigger(self) -> None:

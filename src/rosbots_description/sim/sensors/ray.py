@@ -49,18 +49,19 @@ def read_sweep(element: Element | None, samples: int) -> Sweep:
     Raises:
         PluginError: a number is out of range.
     """
+    if element is None:
+        return Sweep(samples, samples, 0.0, 0.0)
     samples = count(element, 'samples', samples, MAX_SAMPLES)
     resolution = number(element, 'resolution', 1.0)
     if not 1.0 <= samples * resolution <= MAX_SAMPLES:
-        line = 0 if element is None else element.line
         raise PluginError(
-            f'line {line}: <resolution> is {resolution:g}; with {samples} '
+            f'line {element.line}: <resolution> is {resolution:g}; with {samples} '
             f'<samples> it must give 1 to {MAX_SAMPLES} ranges'
         )
     angles = []
     for tag in ('min_angle', 'max_angle'):
         angles.append(number(element, tag, 0.0))
-        if element is not None and abs(angles[-1]) > MAX_ANGLE:
+        if abs(angles[-1]) > MAX_ANGLE:
             raise PluginError(
                 f'line {element.line}: <{tag}> is {angles[-1]:g} rad; it must lie '
                 f'between -{MAX_ANGLE:g} and {MAX_ANGLE:g}'

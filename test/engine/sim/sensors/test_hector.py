@@ -154,6 +154,7 @@ def test_imu_at_rest_measures_gravity_and_its_errors_tilt_the_orientation(world)
 def test_calibration_removes_the_drift_until_it_returns(world):
     plugin = spawn(world, 'imu', 'imu', '<rateDrift>.5</rateDrift>')[1]
     world.run(1000)
+    assert plugin._rate.frequency == pytest.approx([1.0 / 3600.0] * 3)  # the default: an hour
     drift = plugin._rate.drift(1.0)
     plugin.calibrate()
     assert np.abs(drift).min() > 0.0

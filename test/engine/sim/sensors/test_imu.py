@@ -172,6 +172,14 @@ def test_model_plugin_without_a_rate_updates_every_step_with_defaults(world):
     )
 
 
+@pytest.mark.parametrize(('text', 'yaw'), [('true', 0.0), ('false', 0.7), ('maybe', 0.7)])
+def test_orientation_is_relative_to_the_initial_one_only_if_the_tag_says_true(world, text, yaw):
+    tag = f'<initialOrientationAsReference>{text}</initialOrientationAsReference></plugin>'
+    _, found = spawn(world, 'imu_sensor', 0.7, lambda robot: robot.replace('</plugin>', tag))
+    world.run(10)
+    assert found[0][1].orientation == pytest.approx(from_rpy(0.0, 0.0, yaw), abs=1e-3)
+
+
 def test_tags_that_are_missing_are_warnings_in_upstreams_words(world, caplog):
     spawn(
         world,

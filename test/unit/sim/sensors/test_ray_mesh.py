@@ -1,7 +1,10 @@
-"""Meshes for rays are built on a thread, which no fork is without."""
+"""Meshes for rays: their bounds, and the thread that builds them, which no fork is without."""
 
+import math
 import os
 import threading
+
+import pytest
 
 from rosbots_description.sim.description import Mesh
 from rosbots_description.sim.sensors import ray_mesh
@@ -23,3 +26,17 @@ def test_a_fork_has_the_meshes_that_were_being_built(monkeypatch):
     if not child:
         os._exit(0 if future.done() else 1)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_bounds_of_a_mesh_are_about_the_middle_of_its_bounding_box(tmp_path):
+    """Of a pyramid from 3 to 5 m above its origin, whose base is a square of 2 m."""
+    corners = [(1, 1, 3), (-1, 1, 3), (-1, -1, 3), (1, -1, 3), (0, 0, 5)]
+    faces = [(1, 2, 3), (1, 3, 4), (1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]
+    file = tmp_path / 'pyramid.obj'
+    file.write_text(
+        ''.join(f'v {x} {y} {z}\n' for x, y, z in corners)
+        + ''.join(f'f {a} {b} {c}\n' for a, b, c in faces)
+    )
+    found = ray_mesh.RayMesh(Mesh(str(file)))
+    assert (found.centre, found.half) == ((0.0, 0.0, 4.0), (1.0, 1.0, 1.0))
+    assert found.radius == pytest.approx(math.sqrt(3.0))

@@ -6,13 +6,16 @@ from types import SimpleNamespace
 
 import pytest
 from lxml import etree
+from support.sensing import collected
 
 from rosbots_description.sim.core import PluginError, from_rpy
 from rosbots_description.sim.formats.xml.values import to_element
+from rosbots_description.sim.rendering import Picture
+from rosbots_description.sim.runtime import Output
 from rosbots_description.sim.sensors.camera import CameraSensor
 from rosbots_description.sim.sensors.camera_outputs import CameraInfo
-from rosbots_description.sim.sensors.camera_plugins import CALIBRATION_TAGS, CameraPlugin
-from rosbots_description.sim.sensors.noise import GaussianNoise, gaussian, read_noise
+from rosbots_description.sim.sensors.camera_plugins import CALIBRATION_TAGS, CameraPlugin, Channel
+from rosbots_description.sim.sensors.noise import GaussianNoise, RandomSteps, gaussian, read_noise
 from rosbots_description.sim.sensors.numbers import count, number
 from rosbots_description.sim.sensors.ray import read_sweep
 from rosbots_description.sim.sensors.ray_fan import Sweep
@@ -94,6 +97,7 @@ def test_sweep_beyond_a_limit_is_refused(text):
     [
         ('<noise type="gaussian"><mean>0.1</mean><stddev>0.2</stddev></noise>', (0.1, 0.2)),
         ('<noise><type>gaussian_quantized</type><stddev>0.2</stddev></noise>', (0.0, 0.2)),
+        ('<noise type="gaussian"><mean>0.1</mean></noise>', (0.1, 0.0)),
         ('<noise type="none"><stddev>0.2</stddev></noise>', (0.0, 0.0)),
     ],
 )
@@ -101,6 +105,15 @@ def test_noise_is_gaussian_or_none(text, expected):
     found = read_noise(element(text))
     assert found == GaussianNoise(*expected)
     assert bool(found) == any(expected)
+
+
+@pytest.mark.parametrize('seed', [-1, 2**65 - 1])
+def test_any_integer_is_a_seed_of_which_64_bits_count(seed):
+    first, other = (
+        RandomSteps(SimpleNamespace(seed=number), 'a').at(5).random()
+        for number in (2**64 - 1, seed)
+    )
+    assert first == other
 
 
 def test_noise_of_a_mean_alone_or_a_deviation_alone_is_noise():
@@ -234,3 +247,15 @@ def test_a_focal_length_that_fits_up_to_rounding_is_not_complained_about(caplog,
     caplog.set_level(logging.DEBUG)
     calibration(focalLength=share * LENS.focal_length)
     assert caplog.text == ''
+
+
+def test_no_compressed_image_is_sent_of_a_picture_without_a_jpeg():
+    """It was requested before the reader connected."""
+    plugin = SimpleNamespace(
+        frame='eye', output=lambda _: Output(lambda: None), info=lambda *_: None
+    )
+    channel = Channel(plugin, SimpleNamespace(lens=LENS, encoding='rgb8'), '', 0.0)
+    found = collected(channel.compressed)
+    channel.send(Picture(1, None, None))
+    channel.send(Picture(2, None, None, b'file'))
+    assert [(image.stamp_ns, image.data) for image in found] == [(2, b'file')]
