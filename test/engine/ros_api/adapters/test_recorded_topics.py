@@ -261,7 +261,7 @@ def test_two_robots_of_the_same_names_share_topics_and_the_first_has_the_service
 def test_defaults_are_logged_as_information_not_as_warnings(
     world, wire, caplog, robot, removed, message
 ):
-    caplog.set_level(logging.INFO, 'rosbots_description.sim.plugins.parameters')
+    caplog.set_level(logging.INFO, 'rosbots_description')
     spawn(world, wire, robot, '/', removed)
     levels = {record.getMessage(): record.levelname for record in caplog.records}
     assert levels[message] == 'INFO'
