@@ -78,13 +78,14 @@ class Recorder:
             self._noting[-1].add(frame.f_code)
 
     def start(self) -> None:
-        """Note the calls of this process from now on."""
+        """Note the calls of this process from now on, or until a test ends that."""
         sys.settrace(self.note)
         threading.settrace(self.note)
 
     @contextlib.contextmanager
     def _note_in(self, calls: set[CodeType]) -> Iterator[None]:
         self._noting.append(calls)
+        self.start()  # anew: hypothesis, among others, ends the tracing of others with its own
         try:
             yield
         finally:

@@ -156,7 +156,9 @@ def test_calls_of_shared_fixtures_count_for_their_users_and_of_imports_for_nobod
         'def fixture(): return shared()\n'
         'def test_first(fixture): pass\n'
         'def test_second(fixture): pass\n'
-        'def test_other(): assert 0\n'
+        'def test_other(): import sys; sys.settrace(None); assert 0\n'
+        'def test_third(fixture): called()\n'
+        'def called(): return 1\n'
     )
     records, imported = module.record(['test_it.py'])
     named = {name.rpartition('::')[2]: record for name, record in records.items()}
@@ -164,7 +166,9 @@ def test_calls_of_shared_fixtures_count_for_their_users_and_of_imports_for_nobod
     assert [name for name, one in named.items() if (path, 4) in one.calls] == [
         'test_first',
         'test_second',
+        'test_third',
     ]
+    assert [name for name, one in named.items() if (path, 12) in one.calls] == ['test_third']
     assert (path, 3) in imported
     assert [name for name, one in named.items() if one.failed] == ['test_other']
     assert module.Tests(records, imported).broken == {
