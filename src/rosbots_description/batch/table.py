@@ -136,7 +136,8 @@ class Table:
 
     def _write(self, path: Path, rows: list[dict[str, Any]]) -> bool:
         """Write a file as a whole or not at all; tell whether it is written."""
-        temporary = path.with_suffix('.tmp')
+        # Who reads the folder does not read it: files that begin with a dot are left out.
+        temporary = path.with_name(f'.{path.name}')
         try:
             parquet.write_table(pa.Table.from_pylist(rows, schema=self.schema), temporary)
             temporary.replace(path)

@@ -40,6 +40,23 @@ def test_flushed_rows_can_be_read_at_any_time(file, tmp_path):
     assert found.schema.field('force').type == 'double'
 
 
+def test_a_folder_can_be_read_after_a_batch_was_killed_while_it_wrote(file, tmp_path, monkeypatch):
+    table = Table(file, tmp_path)
+    table.add(rows(file, 3)[0])
+    table.flush()
+    table.add(rows(file, 1)[0])
+
+    def begin(_rows, path):
+        path.touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(parquet, 'write_table', begin)
+    with pytest.raises(KeyboardInterrupt):
+        table.flush()
+    assert len(list((tmp_path / 'rows').iterdir())) == 2
+    assert parquet.read_table(tmp_path / 'rows').column('run').to_pylist() == [3]
+
+
 def test_finished_rows_are_one_file_in_order(file, tmp_path):
     table = Table(file, tmp_path)
     for row in rows(file, 3, 1, 2):
