@@ -108,8 +108,8 @@ def _unusable() -> str:
 def _library() -> str:
     """Return the folder from which xacro imports this package; others it has of the interpreter.
 
-    Not this process's folders of modules: one of them is that of the user's script, with all else
-    that is there.
+    Not all folders of this process's modules: those of PYTHONPATH, and the one in which it was
+    started by `python3 -m`, may hold anything of the user.
     """
     spec = importlib.util.find_spec('rosbots_simulator')
     assert spec is not None and spec.origin is not None

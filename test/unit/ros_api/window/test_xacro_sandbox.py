@@ -76,7 +76,7 @@ def test_files_and_environment_of_the_user_are_not_read(secret, inner):
     assert SECRET not in told(inner)
 
 
-def test_the_folder_of_the_users_script_is_not_read(secret, monkeypatch):
+def test_other_folders_of_modules_are_not_read(secret, monkeypatch):
     monkeypatch.syspath_prepend(secret.parent)
     assert SECRET not in told(f'<xacro:include filename="{secret.parent}/secret.xacro"/>')
     assert SECRET not in told(f'<link name="{escape(f"cat {secret}")}"/>')
