@@ -92,7 +92,7 @@ class Tests:
         line, names = place_of(one.tree, one.number)
         function = (str(one.path), line)
         outside = not line or function in self._imported
-        calls = self._readers(names) if outside else {function}
+        calls = self._readers(names) | {function} if outside else {function}
         found = {name for name, record in self._records.items() if record.calls & calls}
         folders = {_folder(name) for name in self._records}
         near = next(
