@@ -83,6 +83,16 @@ def view_corners(eye: NDArray[Any], lens: Lens) -> NDArray[Any]:
     return np.vstack([eye[:3, 3], eye[:3, 3] + lens.far * ways @ eye[:3, :3].T])
 
 
+def box_reaches(arms: NDArray[Any], directions: NDArray[Any]) -> NDArray[Any]:
+    """Return how far boxes reach from their middles along unit vectors (n, d) [m].
+
+    Args:
+        arms: from the middle of each to three of its sides, as columns (n, 3, 3) [m].
+        directions: the unit vectors (d, 3).
+    """
+    return np.asarray(np.abs(directions @ arms).sum(axis=2))
+
+
 def shadow_view(
     axes: NDArray[Any], middle: NDArray[Any], radius: float, texel: float
 ) -> NDArray[Any]:

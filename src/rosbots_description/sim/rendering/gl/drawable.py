@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from .cameras import box_reaches
 from .shaders import DEPTH_FRAGMENT, NOTHING_FRAGMENT, PLACED_VERTEX, ShaderVariant
 from .shadows import Rectangles, uniform
 from .values import Appearance, Lens, ScenePart
@@ -39,8 +40,8 @@ class Frame:
             arms: from there to three of their sides, as columns (n, 3, 3) [m].
         """
         heights = middles @ self.planes[:, :3].T + self.planes[:, 3]
-        reach = np.abs(self.planes[:, :3] @ arms).sum(axis=2)
-        seen: NDArray[np.bool_] = (heights > -_TOUCHING - reach).all(axis=1)
+        reaches = box_reaches(arms, self.planes[:, :3])
+        seen: NDArray[np.bool_] = (heights > -_TOUCHING - reaches).all(axis=1)
         return seen
 
     def distance(self, drawable: 'Drawable') -> float:

@@ -14,7 +14,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from .cameras import frustum_sphere, light_axes, shadow_view, view_corners
+from .cameras import box_reaches, frustum_sphere, light_axes, shadow_view, view_corners
 from .values import Lens
 
 STILL_SIZE = 2048  # texels along an edge
@@ -76,8 +76,8 @@ class Sweeps:
         """Return the casters whose shadows reach into a view frustum of planes (n, 4)."""
         begin = self._middles @ planes[:, :3].T + planes[:, 3]
         end = begin + self._lengths[:, None] * (planes[:, :3] @ self._light)
-        reach = np.abs(planes[:, :3] @ self._arms).sum(axis=2)
-        inside = (np.maximum(begin, end) > -reach).all(axis=1)
+        reaches = box_reaches(self._arms, planes[:, :3])
+        inside = (np.maximum(begin, end) > -reaches).all(axis=1)
         return [one for one, is_seen in zip(self.casters, inside, strict=True) if is_seen]
 
     def reach(self, middles: NDArray[Any], radii: NDArray[Any]) -> NDArray[np.bool_]:
