@@ -10,7 +10,7 @@ from .cameras import camera_view, matrices, projection
 from .drawable import Drawable, Frame, PlacedPrograms, Placements, gl_matrix
 from .render_target import RenderTarget
 from .shaders import ShaderVariant, light_block, surface_shaders
-from .shadows import Shadows, Sweeps, uniform
+from .shadows import Rectangles, Shadows, Sweeps, uniform
 from .values import DIRECTIONAL, Lens, Scene
 
 SAMPLES = 4  # per pixel, for antialiasing
@@ -130,19 +130,7 @@ class Renderer:
             for name, some in (('still', seen[0]), ('moving', near))
             if some
         }
-        middles = np.array([one.middle for one in frame.visible]).reshape(-1, 3)
-        radii = np.array([one.radius for one in frame.visible])
-        reached = {name: some.reach(middles, radii) for name, some in sweeps.items()}
-        size = frame.lens.width, frame.lens.height
-        for number, one in enumerate(frame.visible):
-            plane = one.plane
-            everywhere = [(0, 0, *size)]
-            parts = {
-                name: sweeps[name].rectangles(plane, frame.view, size) if plane else everywhere
-                for name, those in reached.items()
-                if those[number]
-            }
-            frame.shadowed[one] = {name: some for name, some in parts.items() if some}
+        frame.shadowed = _shadowed(frame, sweeps)
         # A map that nothing in the picture reads is not drawn.
         read = {name for parts in frame.shadowed.values() for name in parts}
         shadows.draw(
@@ -251,6 +239,29 @@ class Renderer:
         else:
             self._context.enable(moderngl.CULL_FACE)
             self._context.front_face = 'ccw' if drawable.mirrored else 'cw'
+
+
+def _shadowed(frame: Frame, sweeps: dict[str, Sweeps]) -> dict[Drawable, dict[str, Rectangles]]:
+    """Return for each visible part the maps of the shadows that may fall on it, and where.
+
+    Args:
+        sweeps: of the casters of each map, by its name.
+    """
+    middles = np.array([one.middle for one in frame.visible]).reshape(-1, 3)
+    radii = np.array([one.radius for one in frame.visible])
+    reached = {name: some.reach(middles, radii) for name, some in sweeps.items()}
+    size = frame.lens.width, frame.lens.height
+    everywhere = [(0, 0, *size)]
+    found = {}
+    for number, one in enumerate(frame.visible):
+        plane = one.plane
+        parts = {
+            name: sweeps[name].rectangles(plane, frame.view, size) if plane else everywhere
+            for name, those in reached.items()
+            if those[number]
+        }
+        found[one] = {name: some for name, some in parts.items() if some}
+    return found
 
 
 def _set(program: moderngl.Program, name: str, value: object) -> None:
