@@ -30,8 +30,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calls import Function, Record
+from forked_tests import import_others, record, run_tests
 from mutation import changed_line, mutant, parts, place_of, places, statements
-from trials import import_others, record, run_tests
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / 'tools'))
 from changed import dependencies, test_files

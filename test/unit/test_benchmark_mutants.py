@@ -145,9 +145,10 @@ def test_tests_that_call_its_function_can_notice_a_mutant(module, mutation, reco
 def test_calls_of_shared_fixtures_count_for_their_users_and_of_imports_for_nobody(
     module, fresh_imports, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr('trials.ROOT', tmp_path.resolve())
+    monkeypatch.setattr('forked_tests.ROOT', tmp_path.resolve())
     monkeypatch.chdir(tmp_path)
-    Path('test_it.py').write_text(
+    Path('src').mkdir()
+    Path('src', 'test_it.py').write_text(
         'import pytest\n\n'
         'def imported(): return 1\n'
         'def shared(): return 1\n'
@@ -160,9 +161,9 @@ def test_calls_of_shared_fixtures_count_for_their_users_and_of_imports_for_nobod
         'def test_third(fixture): called()\n'
         'def called(): return 1\n'
     )
-    records, imported = module.record(['test_it.py'])
+    records, imported = module.record(['src/test_it.py'])
     named = {name.rpartition('::')[2]: record for name, record in records.items()}
-    path = str((tmp_path / 'test_it.py').resolve())
+    path = str((tmp_path / 'src' / 'test_it.py').resolve())
     assert [name for name, one in named.items() if (path, 4) in one.calls] == [
         'test_first',
         'test_second',
@@ -211,7 +212,7 @@ def test_a_mutant_is_noticed_by_a_test_that_fails_crashes_or_hangs(module, notic
 
 
 def test_a_test_that_fails_without_a_change_notices_nothing(module, notice, tmp_path, monkeypatch):
-    monkeypatch.setattr('trials.ROOT', tmp_path)
+    monkeypatch.setattr('forked_tests.ROOT', tmp_path)
     monkeypatch.chdir(tmp_path)
     Path('test_broken.py').write_text('def test_it():\n    assert False\n')
     tests = module.Tests({}, frozenset())

@@ -136,7 +136,7 @@ def record(tests: list[str]) -> tuple[dict[str, Record], frozenset[Function]]:
     """
 
     def run() -> tuple[dict[str, Record], frozenset[Function]]:
-        recorder = Recorder(ROOT)
+        recorder = Recorder(ROOT / 'src')
         recorder.start()
         _run_pytest(recorder, *tests)
         return recorder.records(), recorder.imported()
