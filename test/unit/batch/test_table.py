@@ -144,14 +144,14 @@ def test_folder_in_use_is_refused_until_it_is_closed(file, tmp_path):
 
 def test_folder_of_a_killed_batch_is_not_in_use(file, tmp_path):
     code = """
-import sys, time
+import signal, sys
 sys.path[:] = sys.argv[2:]
 from support.batches import pushed_ball
 from rosbots_description.batch import ScenarioFile
 from rosbots_description.batch.table import Table
 table = Table(ScenarioFile(pushed_ball()), sys.argv[1])
 print('open', flush=True)
-time.sleep(600.0)
+signal.pause()
 """
     with subprocess.Popen(
         [sys.executable, '-c', code, tmp_path, *sys.path], stdout=subprocess.PIPE
