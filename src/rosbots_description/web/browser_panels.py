@@ -80,7 +80,7 @@ class BrowserPanels(Panel):
             with tabs.show:
                 self._overlays = OverlayPanel(client, self.selection, shared.site.allow_viewers)
         self._panels.append(self._overlays)
-        _detach(client)
+        detach(client)
         self.refresh()
 
     def click(self, model: str, link: str) -> None:
@@ -186,14 +186,16 @@ class BrowserPanels(Panel):
             )
 
 
-def _detach(client: viser.ClientHandle) -> None:
+def detach(client: viser.ClientHandle) -> None:
     """Take the controls of a browser out of viser's lists of what is in the tabs of all.
 
     When a browser leaves, viser marks what is in these lists as removed, after which a command that
-    is still being carried out could show nothing: each control raises RuntimeError.
+    is still being carried out could show nothing: each control raises RuntimeError. What is made
+    while viser does so may stay in the lists.
     """
-    nested = client.gui._handles_in_foreign_containers
-    containers = client._viser_server.gui._container_handle_from_uuid
-    for number, handle in nested.items():
-        containers[handle._impl.parent_container_id]._children.pop(number)
-    nested.clear()
+    for container in tuple(client._viser_server.gui._container_handle_from_uuid.values()):
+        children = container._children
+        for number, handle in tuple(children.items()):
+            if handle._impl.gui_api is client.gui:  # type: ignore[attr-defined]
+                children.pop(number, None)
+    client.gui._handles_in_foreign_containers.clear()

@@ -9,7 +9,7 @@ from weakref import WeakSet
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
-from .browser_panels import BrowserPanels, Shared, Tabs
+from .browser_panels import BrowserPanels, Shared, Tabs, detach
 from .clock import Clock
 from .contacts import ContactsPanel
 from .downloads import DownloadsPanel
@@ -176,7 +176,7 @@ class Page:
                 self.browsers[client.client_id] = BrowserPanels(client, self._shared, self._tabs)
             except (KeyError, RuntimeError):
                 if client.client_id in self._site.get_clients():
-                    raise  # else viser has removed what was made so far
+                    raise  # else viser has removed what was made so far; `_leave` does the rest
 
     def _leave(self, client: viser.ClientHandle) -> None:
         with self._lock:
@@ -188,7 +188,9 @@ class Page:
             browser = self.browsers.pop(client.client_id, None)
             if browser is not None:
                 browser.close()
-            self._site.forget(client)  # when its panels are complete, not while they are made
+            # When its panels are complete, not while they are made:
+            detach(client)
+            self._site.forget(client)
             if self._is_open and not self._site.get_clients():
                 self._is_open = False
                 self._view.close()
