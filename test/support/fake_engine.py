@@ -56,6 +56,7 @@ class FakeEngine(PhysicsEngine):
 
     def remove(self, body):
         self.bodies.remove(body)
+        self.placements += 1
 
     def reset(self):
         self.bodies.clear()

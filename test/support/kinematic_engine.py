@@ -125,6 +125,7 @@ class KinematicEngine:
         return self.bodies[-1]
 
     def remove(self, body):
+        self.placements += 1
         self.bodies.remove(body)
 
     def link_pose(self, body, link):

@@ -10,7 +10,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 from ...sim.core import Pose
-from ...sim.runtime import World
+from ...sim.runtime import NOTHING, World
 from ..messages import fill_transform
 from ..server import Server
 from .markers import FRAME
@@ -18,24 +18,22 @@ from .visuals import publish_changes
 
 
 class ShownFrames:
-    """Poses of the models as last published, to find those that moved."""
+    """A reader of a world's changes: the frames of the models that moved."""
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._shown: dict[str, Pose] = {}
+        self._seen = NOTHING
 
     def reset(self) -> None:
         """Publish all frames next time."""
-        self._shown.clear()
+        self._seen = NOTHING
 
     def changes(self) -> list[TransformStamped]:
         """Return the frames of the models that moved since the last call."""
-        poses = {name: model.pose for name, model in self._world.models.items()}
-        moved = [
-            _transform(name, pose) for name, pose in poses.items() if self._shown.get(name) != pose
-        ]
-        self._shown = poses
-        return moved
+        changes = self._world.revisions.since(self._seen)
+        self._seen = changes.revision
+        models = [link.model for link in changes.moved if link.spec is link.model.spec.links[0]]
+        return [_transform(model.name, model.pose) for model in models]
 
 
 def _transform(name: str, pose: Pose) -> TransformStamped:

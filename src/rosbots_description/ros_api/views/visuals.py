@@ -15,9 +15,8 @@ import rospy
 from genpy import Message
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ...sim.core import Pose
 from ...sim.rendering import SunlitMeshes
-from ...sim.runtime import Link, Model, World
+from ...sim.runtime import NOTHING, Link, Model, World
 from ..server import Server
 from .markers import clearance, place_marker, removal, use_sunlit, visual_marker
 
@@ -27,13 +26,12 @@ REFRESH = 25
 
 
 class LinkView:
-    """The markers of one link, and its pose as last published."""
+    """The markers of one link."""
 
     def __init__(self, link: Link, files: Sequence[str | None] = ()) -> None:
         """Make the markers of a link, from the mesh files of its visuals where given."""
-        self._link = link
+        self.link = link
         self._files = files  # references keep the files
-        self._shown: Pose | None = None
         self.markers = [
             visual_marker(link.scoped_name, number, visual)
             for number, visual in enumerate(link.spec.visuals)
@@ -42,53 +40,60 @@ class LinkView:
             if file is not None:
                 use_sunlit(marker, file)
 
-    def moved(self, refresh: bool) -> list[Marker]:
-        """Return the markers with their new poses; none if it has not moved, without `refresh`."""
-        pose = self._link.pose
-        if pose == self._shown and not refresh:
-            return []
-        self._shown = pose
-        for marker, visual in zip(self.markers, self._link.spec.visuals, strict=True):
+    def placed(self) -> list[Marker]:
+        """Return the markers where the link is now."""
+        pose = self.link.pose
+        for marker, visual in zip(self.markers, self.link.spec.visuals, strict=True):
             place_marker(marker, pose, visual)
         return self.markers
 
 
 class ShownMarkers:
-    """The published markers of a world, to find what has changed."""
+    """A reader of a world's changes: the markers of what was added, removed or moved."""
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._models: dict[str, tuple[Model, list[LinkView]]] = {}
-        self._updates = 0
+        self._links: dict[str, list[LinkView]] = {}  # by models
+        self._awaited: dict[str, Future[list[LinkView]]] = {}  # likewise
+        self._seen, self._updates = NOTHING, 0
 
     def reset(self) -> None:
         """Publish all at the next update, for a subscriber that may show another world."""
-        self._models.clear()
-        self._updates = 0
+        self._seen = NOTHING
 
     def changes(self) -> list[Marker]:
         """Return the markers that changed since the last update."""
-        markers = [] if self._updates else [clearance()]
+        is_first = self._seen is NOTHING
+        changes = self._world.revisions.since(self._seen)
+        self._seen = changes.revision
+        markers = []
+        if is_first:
+            markers.append(clearance())
+            self._links.clear()
+            self._awaited.clear()
+            self._updates = 0
+        for name in changes.removed:
+            self._awaited.pop(name, None)
+            gone = self._links.pop(name, [])
+            markers += [removal(marker) for link in gone for marker in link.markers]
         refresh = self._updates % REFRESH == 0
         self._updates += 1
-        models = self._world.models
-        for name, (model, links) in list(self._models.items()):
-            if models.get(name) is not model:
-                markers += [removal(marker) for link in links for marker in link.markers]
-                del self._models[name]
-        for name, model in models.items():
-            if name not in self._models:
-                views = self._views(name, model)
-                if views is None:
-                    continue
-                self._models[name] = model, views
-            for link in self._models[name][1]:
-                markers += link.moved(refresh)
+        for links in self._links.values():
+            for link in links:
+                if refresh or link.link in changes.moved:
+                    markers += link.placed()
+        self._awaited |= {model.name: self._make(model) for model in changes.added}
+        for name in [name for name, made in self._awaited.items() if made.done()]:
+            self._links[name] = self._awaited.pop(name).result()
+            for link in self._links[name]:
+                markers += link.placed()
         return markers
 
-    def _views(self, _name: str, model: Model) -> list[LinkView] | None:
-        """Return the link views of a new model; None if they are not ready yet."""
-        return [LinkView(link) for link in _shown_links(model)]
+    def _make(self, model: Model) -> Future[list[LinkView]]:
+        """Begin to make the link views of a model."""
+        made: Future[list[LinkView]] = Future()
+        made.set_result([LinkView(link) for link in _shown_links(model)])
+        return made
 
 
 class SunlitMarkers(ShownMarkers):
@@ -97,27 +102,9 @@ class SunlitMarkers(ShownMarkers):
     def __init__(self, world: World, meshes: SunlitMeshes, thread: Executor) -> None:
         super().__init__(world)
         self._meshes, self._thread = meshes, thread
-        self._pending: dict[str, tuple[Model, Future[list[LinkView]]]] = {}
 
-    def reset(self) -> None:
-        """Publish all models as soon as their files are written."""
-        super().reset()
-        self._pending.clear()
-
-    def changes(self) -> list[Marker]:
-        """Return the changed markers of the models whose files are written."""
-        markers, models = super().changes(), self._world.models
-        self._pending = {name: pending for name, pending in self._pending.items() if name in models}
-        return markers
-
-    def _views(self, name: str, model: Model) -> list[LinkView] | None:
-        if self._pending.get(name, (None,))[0] is not model:
-            self._pending[name] = model, self._thread.submit(self._make_views, model)
-        future = self._pending[name][1]
-        if not future.done():
-            return None
-        del self._pending[name]
-        return future.result()
+    def _make(self, model: Model) -> Future[list[LinkView]]:
+        return self._thread.submit(self._make_views, model)
 
     def _make_views(self, model: Model) -> list[LinkView]:
         return [

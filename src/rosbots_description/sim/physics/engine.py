@@ -115,7 +115,7 @@ class PhysicsEngine(Protocol):
 
     @property
     def placements(self) -> int:
-        """How often something was added, placed or restored; else, static models do not move."""
+        """How often something was added, removed, placed or restored; else only `step` moves."""
 
     @property
     def advances(self) -> int:

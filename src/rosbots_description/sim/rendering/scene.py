@@ -25,7 +25,7 @@ from ..description import (
     Visual,
 )
 from ..meshes import MeshPart, read_mesh
-from ..runtime import Link, World
+from ..runtime import NOTHING, Link, World
 from .gl import Appearance, Light, Scene, ScenePart
 from .shapes import mesh_corners, unit_box, unit_cylinder, unit_sphere, unit_square
 
@@ -36,40 +36,49 @@ Triangles = Callable[[], NDArray[Any]]
 class SceneMirror:
     """Mirrors the visuals and lights of a world.
 
-    `scene` and `meshes` are those of the last `update`; `poses` returns the poses of its bodies.
+    `scene` and `meshes` are those of the last `update`; so are the poses that `poses` returns.
     """
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._seen: tuple[Any, ...] = ()
-        self._links: list[Link] = []
+        self._seen = NOTHING
+        self._rows: dict[Link, int] = {}
+        self._poses = np.empty((0, 7))
         self.scene = Scene(())
         self.meshes: dict[str, Triangles] = {}
 
     def update(self) -> bool:
         """Update `scene` from the world; return whether it has changed."""
-        world = self._world
-        # Specifications are immutable, and a changed model is a new object.
-        seen = (
-            [(model, model.spec) for model in world.models.values()],
-            list(world.lights.values()),
-            world.scene,
-        )
-        if seen == self._seen:
-            return False
-        self._seen = seen
-        self._links = [
+        changes = self._world.revisions.since(self._seen)
+        self._seen = changes.revision
+        if changes.looks:
+            self._lay_out()
+        for link, (position, orientation) in changes.moved.items():
+            row = self._rows.get(link)
+            if row is not None:
+                self._poses[row] = *position, *orientation
+        return changes.looks
+
+    def poses(self) -> NDArray[Any]:
+        """Return the poses of the scene's bodies (n, 7): position [m], quaternion x, y, z, w."""
+        return self._poses.copy()
+
+    def _lay_out(self) -> None:
+        world, self.meshes = self._world, {}
+        links = [
             link
             for model in world.models.values()
             for link in model.links.values()
             if link.spec.visuals
         ]
-        self.meshes = {}
+        self._rows = {link: row for row, link in enumerate(links)}
+        poses = [(*position, *orientation) for position, orientation in (one.pose for one in links)]
+        self._poses = np.array(poses, float).reshape(-1, 7)
         parts = tuple(
             part
-            for number, link in enumerate(self._links)
+            for link, row in self._rows.items()
             for visual in link.spec.visuals
-            for part in visual_parts(visual, number, link.model.static, self.meshes)
+            for part in visual_parts(visual, row, link.model.static, self.meshes)
         )
         scene = world.scene
         self.scene = Scene(
@@ -79,16 +88,6 @@ class SceneMirror:
             scene.background[:3],
             scene.shadows,
         )
-        return True
-
-    def poses(self) -> NDArray[Any]:
-        """Return the poses of the scene's bodies (n, 7): position [m], quaternion x, y, z, w.
-
-        The engine is queried once for each.
-        """
-        poses = (link.pose for link in self._links)
-        numbers = [(*position, *orientation) for position, orientation in poses]
-        return np.array(numbers, float).reshape(-1, 7)
 
 
 def visual_parts(

@@ -1,5 +1,6 @@
 """The running world: models, the schedule of hooks, and outputs."""
 
+from .changes import NOTHING
 from .empty_world import add_empty_world
 from .model import CollisionFrame, Joint, Link, Model
 from .outputs import FrameTransform, JointStates, Odometry, Output
@@ -14,6 +15,7 @@ from .world import WORLD_FRAMES, Entity, Listener, World
 
 __all__ = [
     'NEVER',
+    'NOTHING',
     'WORLD_FRAMES',
     'CollisionFrame',
     'Entity',

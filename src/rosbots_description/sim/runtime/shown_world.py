@@ -2,58 +2,42 @@
 
 from itertools import count
 
-from ..core import Pose
-from ..description import (
-    ModelSpec,
-    SceneChange,
-    ShownLink,
-    ShownModel,
-    ShownMotion,
-    ShownSensor,
-)
+from ..description import SceneChange, ShownLink, ShownModel, ShownMotion, ShownSensor
+from .changes import NOTHING
 from .model import Link, Model
 from .world import World
 
 
 class ShownWorld:
-    """What was shown of a world, to find what has changed."""
+    """A reader of a world's changes; numbers what it shows."""
 
     def __init__(self, world: World) -> None:
         self._world = world
         self._numbers = count()
-        self._models: dict[str, tuple[Model, ModelSpec]] = {}
-        self._links: dict[int, tuple[Link, Pose]] = {}  # with the pose as last shown
-        self._settings: object = None
+        self._links: dict[str, dict[Link, int]] = {}  # numbers, by models
         self.reset()
 
     def reset(self) -> None:
         """Show everything next time."""
-        self._models.clear()
-        self._links.clear()
-        self._settings = None
+        self._changed = self._moved = NOTHING
 
     def change(self) -> SceneChange | None:
         """Return what has changed since the last call; None for nothing."""
         world = self._world
-        found = {name: (model, model.spec) for name, model in world.models.items()}
-        settings = (dict(world.lights), world.scene, world.physics)
-        if (found, settings) == (self._models, self._settings):
+        is_first = self._changed is NOTHING
+        changes = world.revisions.since(self._changed)
+        self._changed = changes.revision
+        if not (changes.looks or changes.physics):
             return None
-        reset = self._settings is None
-        removed = tuple(name for name, seen in self._models.items() if found.get(name) != seen)
-        gone = {self._models[name][0] for name in removed}
-        self._links = {
-            number: shown for number, shown in self._links.items() if shown[0].model not in gone
-        }
-        added = tuple(
-            self._shown(name, model)
-            for name, (model, _) in found.items()
-            if self._models.get(name) != found[name]
-        )
-        self._models, self._settings = found, settings
+        if is_first:
+            self._links.clear()
+            self._moved = changes.revision
+        gone = [*changes.removed, *(model.name for model in changes.respecified)]
+        removed = tuple(name for name in gone if self._links.pop(name, None) is not None)
+        added = {*changes.added, *changes.respecified}
         return SceneChange(
-            reset,
-            added,
+            is_first,
+            tuple(self._shown(model) for model in world.models.values() if model in added),
             removed,
             dict(world.lights),
             world.scene,
@@ -64,16 +48,17 @@ class ShownWorld:
 
     def motion(self, real_time: float) -> ShownMotion:
         """Return the clock, and the links that moved since they were last shown."""
+        changes = self._world.revisions.since(self._moved)
+        self._moved = changes.revision
         moved = {}
-        for number, (link, shown) in self._links.items():
-            pose = link.pose
-            if pose != shown:
+        for link, pose in changes.moved.items():
+            number = self._links.get(link.model.name, {}).get(link)
+            if number is not None:
                 moved[number] = pose
-                self._links[number] = link, pose
         clock = self._world.clock
         return ShownMotion(clock.now, real_time, clock.steps, self._world.paused, moved)
 
-    def _shown(self, name: str, model: Model) -> ShownModel:
+    def _shown(self, model: Model) -> ShownModel:
         links = []
         for link in model.links.values():
             spec = link.spec
@@ -88,7 +73,8 @@ class ShownWorld:
                 spec.gravity,
                 tuple(sensors),
             )
-            self._links[shown.number] = link, shown.pose
             links.append(shown)
+        numbers = (link.number for link in links)
+        self._links[model.name] = dict(zip(model.links.values(), numbers, strict=True))
         joints = tuple(joint.spec for joint in model.joints.values())
-        return ShownModel(name, tuple(links), joints, model.static, model.spec.links[0].pose)
+        return ShownModel(model.name, tuple(links), joints, model.static, model.spec.links[0].pose)

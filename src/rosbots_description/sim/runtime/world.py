@@ -22,6 +22,7 @@ from ..core import (
 )
 from ..description import LightSpec, ModelSpec, PhysicsSettings, WorldSpec
 from ..physics import CompiledModel, EngineFactory, make_engine
+from .changes import Revisions
 from .divergence_watchdog import DivergenceWatchdog
 from .external_forces import ExternalForces
 from .holds import Holds
@@ -108,6 +109,7 @@ class World:
         self._watchdog = DivergenceWatchdog(self)
         self.schedule.add(self._watchdog)
         self.engine = make_engine(self.physics)
+        self.revisions = Revisions(self)
 
     def close(self) -> None:
         """Free the engine and other resources outside Python."""
@@ -239,6 +241,7 @@ class World:
             part.unload()
         model.remove_from_engine()
         del self.models[model.name]
+        self.revisions.forget()
 
     @_reporting
     def reset_world(self) -> None:

@@ -43,14 +43,15 @@ class RayScene(Listener):
     """The collisions of all models of a world, in arrays."""
 
     def __init__(self, world: World) -> None:
-        self._models: list[Model] = []
+        # A reference to the world would keep it alive.
+        self._revisions, self._world_models = world.revisions, world.models
         self._engine, self._read = world.engine, (-1, -1)  # its counters, when poses were read
         self._known_meshes: dict[Mesh, Future[RayMesh]] = {}
         self._unreadable: set[Mesh] = set()  # of these an error was logged
         self._rays: WeakKeyDictionary[Sensor, int] = WeakKeyDictionary()  # of a scan
         self._reported = MANY_RAYS / 2  # rays in the last warning about their sum
-        self._world_models = world.models  # a reference to the world would keep it alive
-        self._lay_out()
+        self._laid_out: object = None  # models
+        self._lay_out([])
         for model in self._world_models.values():
             self.model_spawned(model)
         world.listeners.append(self)
@@ -91,9 +92,8 @@ class RayScene(Listener):
 
     def model_deleted(self, model: Model) -> None:
         """Drop it, and its meshes that no other model has."""
-        if model in self._models:
-            self._models.remove(model)
-            self._lay_out()
+        self._laid_out = None  # the next scan lays out the others
+        self._lay_out([])
         others = [other for other in self._world_models.values() if other is not model]
         used = {collision.geometry for _, collision in _collisions(others)}
         for mesh in self._known_meshes.keys() - used:
@@ -224,10 +224,10 @@ class RayScene(Listener):
 
     def _update(self) -> None:
         """Update to models spawned and deleted, and to links moved."""
-        models = list(self._world_models.values())
-        if models != self._models:
-            self._models = models
-            self._lay_out()
+        models = self._revisions.models()
+        if models is not self._laid_out:
+            self._laid_out = models
+            self._lay_out(list(models))
         placements, last = self._engine.placements, self._read
         self._read = placements, self._engine.advances
         if self._read == last:
@@ -243,9 +243,9 @@ class RayScene(Listener):
                 position, orientation = compose(link.pose, collision.pose)
                 self._points[row], self._normals[row] = position, rotate(orientation, normal)
 
-    def _lay_out(self) -> None:
-        """Allocate the arrays for the shapes of all models, sorted by kind."""
-        found = list(_collisions(self._models))
+    def _lay_out(self, models: list[Model]) -> None:
+        """Allocate the arrays for the shapes of models, sorted by kind."""
+        found = list(_collisions(models))
         self._links = list(dict.fromkeys(link for link, _ in found))
         self._moving = [link for link in self._links if not link.model.static]
         self._read = -1, -1

@@ -1,16 +1,21 @@
 """TF frames for the window: one per model, sent when it has moved."""
 
+from dataclasses import replace
+
 from support import urdf_spec
 from support.fake_engine import FakeEngine
 
 from rosbots_description.ros_api.views.frames import ShownFrames
 from rosbots_description.sim.core.transforms import Pose
+from rosbots_description.sim.runtime.changes import NOTHING
 from rosbots_description.sim.runtime.world import World
 
 BOX = urdf_spec(
     '<link name="box"><inertial><mass value="1"/>'
     '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
 )
+ARM = replace(BOX, links=(BOX.links[0], replace(BOX.links[0], name='hand')))
+UP = Pose((0.0, 0.0, 1.0))
 
 
 def test_frame_of_a_model_is_sent_once_and_after_motion():
@@ -29,3 +34,15 @@ def test_frame_of_a_model_is_sent_once_and_after_motion():
     assert moved.transform.translation.y == 2.0
     shown.reset()
     assert len(shown.changes()) == 2
+
+
+def test_a_frame_is_not_sent_for_other_links_of_its_model():
+    world = World(make_engine=FakeEngine)
+    arm = world.spawn(ARM, 'arm', Pose())
+    shown = ShownFrames(world)
+    assert len(shown.changes()) == 1
+    hand = arm.body.spec.link('hand')
+    arm.body.spec = replace(arm.body.spec, links=(BOX.links[0], replace(hand, pose=UP)))
+    world.run(1)
+    assert world.revisions.since(NOTHING).moved[arm.links['hand']] == UP
+    assert shown.changes() == []

@@ -221,6 +221,7 @@ class Engine(BodyStates):
 
     def remove(self, body: Body) -> None:
         """Remove a model from the world."""
+        self.placements += 1
         self._sleep.wake_all()
         self._joint_readings.clear()
         if body in self._weightless:
