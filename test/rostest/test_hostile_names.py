@@ -38,7 +38,7 @@ from hostile_page import Listener, arm, body, recorded, topic, watch
 from support.browser import Browser
 from support.hostile_texts import HOST, MARK, TEXTS
 
-from rosbots_description.web.text import plain
+from rosbots_description.web.controls import plain
 
 SIZE = (1000, 700)  # [pixels]
 # The scene is drawn with few pixels: it is not looked at, and slow without a graphics card.

@@ -2,7 +2,7 @@
 """What strangers once could do to the window, tried again on real servers.
 
 Hundreds of further attempts, at the same page without ROS, are in
-test/unit/web/test_strangers.py and test/unit/ros_api/window/test_xacro_sandbox.py.
+test/unit/web/site/test_strangers.py and test/unit/ros_api/window/test_xacro_sandbox.py.
 """
 
 import math

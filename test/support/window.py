@@ -15,9 +15,9 @@ from rosbots_description.sim.description import (
     Visual,
 )
 from rosbots_description.web import Editor, Goals, Inspection, Joints, Library, Robots, Site, Worlds
-from rosbots_description.web.models import Models
+from rosbots_description.web.panels import TimeControl
+from rosbots_description.web.scene import Models
 from rosbots_description.web.simulator import View
-from rosbots_description.web.time_control import TimeControl
 
 
 @contextmanager

@@ -85,7 +85,12 @@ ARROWS = {
         'ros_api/transport ros_api/server ros_api/services ros_api/topics ros_api/adapters '
         'ros_api/reconfigure ros_api/views',
     'batch': 'sim sim/core sim/plugins',
-    'web': 'sim/core sim/description sim/meshes sim/rendering',
+    'web/controls': 'sim/core sim/description',
+    'web/site': 'web/controls',
+    'web/scene': 'sim/core sim/description sim/meshes sim/rendering web/controls web/site',
+    'web/editing': 'sim/core sim/description web/controls web/site web/scene',
+    'web/panels': 'sim/core sim/description sim/rendering web/controls web/site web/scene',
+    'web': 'sim/core sim/description web/controls web/site web/scene web/editing web/panels',
     'viewer':
         'sim sim/controllers sim/core sim/description sim/formats sim/physics sim/placement '
         'sim/plugins sim/resources sim/runtime sim/sensors web',

@@ -9,7 +9,7 @@ SOURCE = 'src/rosbots_description/'
 @pytest.mark.parametrize(
     ('name', 'case'),
     [
-        ('web/gizmo.py', 'test/unit/web/test_page.py'),
+        ('web/editing/gizmo.py', 'test/unit/web/test_page.py'),
         # a plugin, imported when used
         (
             'sim/sensors/imu.py',
@@ -26,7 +26,7 @@ def test_tests_that_import_the_changed_file_run_and_all_rostests(name, case):
 
 
 def test_what_nothing_leads_to_is_left_out_and_counted():
-    choice = changed.choose([SOURCE + 'web/gizmo.py', 'README.md'])
+    choice = changed.choose([SOURCE + 'web/editing/gizmo.py', 'README.md'])
     assert 'test/unit/sim/physics/bullet/test_friction_slip_compliance.py' not in choice.cases
     left = len(changed.test_files()) - len(choice.cases)
     assert choice.left_out.startswith(f'{left} of {len(changed.test_files())} files')

@@ -1,21 +1,11 @@
 """The window in the browser, on viser: what it shows and what it asks for, without ROS."""
 
-from .access import LOOPBACK
-from .change_panel import Inspection
-from .contacts import Contacts
-from .downloads import Worlds
-from .drive import Robots
-from .editor import Editor
-from .goals import Goals
-from .insert import Library
-from .joints import Joints
-from .maps import Maps
+from .editing import Editor, Inspection, Library
 from .page import Page
-from .plot import Signals
+from .panels import Contacts, Goals, Joints, Maps, Robots, ShownTopics, Signals, Worlds
 from .recorder import Recorder
 from .simulator import Simulator
-from .site import Site, WindowError
-from .topics import ShownTopics
+from .site import LOOPBACK, Site, WindowError
 
 __all__ = [
     'LOOPBACK',

@@ -6,30 +6,13 @@ from dataclasses import dataclass
 import viser
 
 from ..sim.description import SceneChange, ShownMotion
-from .camera_keys import CameraKeys
-from .change_panel import ChangePanel
-from .drive import DrivePanel, VelocityCommands
-from .editor import EditorPanel
-from .follow import FollowPanel
-from .gizmo import Drags, Gizmo
-from .ground_clicks import GroundClicks
-from .history import History
-from .insert import InsertPanel
-from .inspector import Inspector
-from .joints import JointPanel
-from .joystick import Joystick
-from .models import Models
-from .notices import Notices
-from .outline import Outline
-from .overlay_panel import OverlayPanel
-from .panel import Panel
+from .controls import CameraKeys, Notices, Panel
+from .editing import ChangePanel, Drags, EditorPanel, Gizmo, History, InsertPanel, Inspector
+from .panels import DrivePanel, JointPanel, Joystick, ModelTree, OverlayPanel, VelocityCommands
 from .polled import Polled
-from .selection import Selection
+from .scene import FollowPanel, GroundClicks, Models, Outline, Selection, StartView, ViewPanel
 from .simulator import Simulator
 from .site import Site
-from .start_view import StartView
-from .tree import ModelTree
-from .views import ViewPanel
 
 Tab = viser.GuiTabHandle | viser.GuiFolderHandle
 

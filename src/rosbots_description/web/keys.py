@@ -5,8 +5,8 @@ import threading
 import viser
 from viser._gui_handles import GuiModalHandle
 
+from .controls import table
 from .site import Site
-from .text import table
 
 TITLE, CLOSE = 'Keys (? closes this list)', 'Close'
 NAMES = {

@@ -10,34 +10,27 @@ import viser
 
 from ..sim.description import SceneChange, ShownMotion
 from .browser_panels import BrowserPanels, Shared, Tabs, detach
-from .clock import Clock
-from .contacts import ContactsPanel
-from .downloads import DownloadsPanel
-from .drive import VelocityCommands
-from .faults import FaultList
-from .gizmo import Drags
-from .goals import GoalPanel
-from .ground import Ground
-from .ground_clicks import GroundClicks
-from .history import History
+from .controls import Notices, Panel, WorldName, lay_out
+from .editing import Drags, History
 from .interpolation import Interpolation
 from .keys import KeyHelp
-from .layout import lay_out
-from .maps import MapPanel
-from .models import Models
-from .notices import Notices
-from .overlay_panel import add_look
-from .panel import Panel
-from .plot import PlotPanel
+from .panels import (
+    Clock,
+    ContactsPanel,
+    DownloadsPanel,
+    FaultList,
+    GoalPanel,
+    MapPanel,
+    PlotPanel,
+    TimePanel,
+    TopicPanel,
+    VelocityCommands,
+    add_look,
+)
 from .polled import Polled
-from .scene import SceneView
+from .scene import Ground, GroundClicks, Models, SceneView, StartView, look
 from .simulator import Simulator
 from .site import Site
-from .start_view import StartView
-from .time_control import TimePanel
-from .topics import TopicPanel
-from .views import look
-from .world_name import WorldName
 
 logger = logging.getLogger(__name__)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from ..sim.core import Pose, SimError, Twist
 from ..sim.description import GROUND_PLANE, CommandTopic
-from .panel import Panel
+from .controls import Panel
 from .simulator import Simulator
 
 LOOKS = 10  # refreshes between two looks at what can be inserted

@@ -1,11 +1,8 @@
 """A recording of a scene, without a browser."""
 
 from ..sim.description import SceneChange, ShownMotion
-from .models import Models
-from .recordings import SceneRecording
-from .scene import SceneView
+from .scene import Models, SceneRecording, SceneView, StartView
 from .site import Site
-from .start_view import StartView
 
 
 class Recorder:

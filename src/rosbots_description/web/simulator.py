@@ -4,19 +4,19 @@ from collections.abc import Callable
 from typing import Protocol
 
 from ..sim.description import SceneChange, ShownMotion
-from .change_panel import Inspection
-from .contacts import Contacts
-from .downloads import Worlds
-from .drive import Robots
-from .editor import Editor
-from .faults import GetFaults
-from .goals import Goals
-from .insert import Library
-from .joints import Joints
-from .maps import Maps
-from .plot import Signals
-from .time_control import TimeControl
-from .topics import ShownTopics
+from .editing import Editor, Inspection, Library
+from .panels import (
+    Contacts,
+    GetFaults,
+    Goals,
+    Joints,
+    Maps,
+    Robots,
+    ShownTopics,
+    Signals,
+    TimeControl,
+    Worlds,
+)
 
 
 class View(Protocol):

@@ -4,7 +4,7 @@ import pytest
 from support import box_urdf
 
 from rosbots_description.sim import SimError, World
-from rosbots_description.web.recordings import SceneRecording
+from rosbots_description.web.scene import SceneRecording
 
 CRATE = f'<robot name="crate">{box_urdf("0.5 0.5 0.5", 2.0)}</robot>'
 

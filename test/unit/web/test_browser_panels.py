@@ -18,7 +18,7 @@ from rosbots_description.sim.description import (
     ShownModel,
 )
 from rosbots_description.web import page as page_module
-from rosbots_description.web.gizmo import NODE
+from rosbots_description.web.editing.gizmo import NODE
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from rosbots_description.sim.core import Pose
 from rosbots_description.sim.description import LightSpec, Mesh, Plane, SceneChange, SceneSpec
 from rosbots_description.web import browser_panels
 from rosbots_description.web import page as page_module
-from rosbots_description.web.scene import SceneView
+from rosbots_description.web.scene.scene import SceneView
 
 SUN = LightSpec('sun', 'directional', direction=(0.0, 0.0, -1.0), cast_shadows=True)
 

@@ -8,7 +8,7 @@ from rosbots_description.sim.core import SimError
 from rosbots_description.sim.description import LightSpec
 from rosbots_description.sim.formats import load_sdf, load_sdf_light
 from rosbots_description.sim.resources import MAX_XML_BYTES
-from rosbots_description.web.shapes import point_light, shape
+from rosbots_description.web.editing.shapes import point_light, shape
 
 HEAD = '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
