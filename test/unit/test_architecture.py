@@ -44,9 +44,10 @@ ARROWS = {
     'sim/rendering/gl': '',
     'sim/placement': 'sim/core sim/description sim/meshes sim/runtime',
     'sim/mapping': 'sim/core sim/description sim/meshes sim/resources sim/runtime',
+    'sim/sensors/rays': 'sim/core sim/description sim/meshes sim/runtime',
     'sim/sensors':
         'sim/core sim/description sim/meshes sim/runtime sim/plugin_registry sim/plugins '
-        'sim/rendering',
+        'sim/rendering sim/sensors/rays',
     'sim/public':
         'sim/core sim/description sim/resources sim/formats sim/physics sim/runtime sim/mapping '
         'sim/plugins sim/controllers sim/sensors',

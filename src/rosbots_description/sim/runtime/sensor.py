@@ -1,14 +1,21 @@
 """The interface of a world to a sensor of a link."""
 
+from typing import TYPE_CHECKING
+
 from ..description import SensorSpec
 from .model_part import ModelPart
+
+if TYPE_CHECKING:
+    from .model import Model
 
 
 class SensorPart(ModelPart):
     """A sensor of a <sensor> element, fixed to a link."""
 
+    model: 'Model'
     spec: SensorSpec
     name: str
+    called: str  # in messages, with its link
     scoped_name: str  # model::link::sensor
     measures: bool  # False: its type is not simulated
     count = 0  # of readings sent

@@ -12,7 +12,7 @@ from ..plugin_registry import register_in_sensor
 from .base import LogsDefaults, SensorPlugin
 from .noise import gaussian
 from .ray import Floats, RaySensor, Scan
-from .ray_fan import Sweep, directions
+from .rays import Sweep, directions
 
 
 class Points(NamedTuple):

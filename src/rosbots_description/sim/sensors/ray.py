@@ -17,8 +17,7 @@ from ..plugin_registry import register_sensor
 from .base import Sensor
 from .noise import read_noise
 from .numbers import MAX_FLOAT32, child_at, count, number
-from .ray_fan import RayFan, Sweep
-from .ray_scene import RayScene
+from .rays import RayFan, RayScene, Sweep
 
 MAX_SAMPLES = 1_000_000  # in all rows; such a scan takes half a second
 MAX_ANGLE = 100.0  # [rad]

@@ -14,7 +14,7 @@ from .camera import CameraSensor
 from .contact import ContactPair, ContactSensor
 from .imu import ImuReading, ImuSensor
 from .ray import RaySensor, Scan
-from .ray_fan import directions
+from .rays import directions
 
 MAX_RAYS = 1000  # that are shown; of more, every second, third … is
 NORMAL = 0.1  # [m] of a shown normal of a contact

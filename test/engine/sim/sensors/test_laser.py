@@ -21,7 +21,7 @@ from support.sensing import (
 
 from rosbots_description.sim.core.transforms import Pose, from_rpy, normalise
 from rosbots_description.sim.public.world import World
-from rosbots_description.sim.sensors.ray_fan import Patches, RayFan, Sweep
+from rosbots_description.sim.sensors.rays.fan import Patches, RayFan, Sweep
 
 SCANS = recordings('laser')
 EXACT = 1e-5  # [m] of all recorded ranges; they have six digits behind the point

@@ -9,8 +9,8 @@ from support.sensing import robot_text
 
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy, rotate
 from rosbots_description.sim.public.world import World
-from rosbots_description.sim.sensors import ray_mesh
-from rosbots_description.sim.sensors.ray_mesh import EmbreeTree, RayMesh
+from rosbots_description.sim.sensors.rays import mesh as ray_mesh
+from rosbots_description.sim.sensors.rays.mesh import EmbreeTree, RayMesh
 
 EXACT = 1e-4  # [m]
 ROBOT = robot_text('laser_nonoise')

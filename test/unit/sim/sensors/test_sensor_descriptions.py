@@ -18,7 +18,7 @@ from rosbots_description.sim.sensors.camera_plugins import CALIBRATION_TAGS, Cam
 from rosbots_description.sim.sensors.noise import GaussianNoise, RandomSteps, gaussian, read_noise
 from rosbots_description.sim.sensors.numbers import count, number
 from rosbots_description.sim.sensors.ray import read_sweep
-from rosbots_description.sim.sensors.ray_fan import Sweep
+from rosbots_description.sim.sensors.rays.fan import Sweep
 
 
 def element(text):

@@ -9,8 +9,8 @@ from rosbots_description.sim.core.transforms import Pose, from_rpy
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.runtime.world import World
-from rosbots_description.sim.sensors.ray_fan import RayFan, Sweep
-from rosbots_description.sim.sensors.ray_scene import RayScene
+from rosbots_description.sim.sensors.rays.fan import RayFan, Sweep
+from rosbots_description.sim.sensors.rays.scene import RayScene
 
 MODEL = """<sdf version="1.6"><model name="m"><link name="l"><collision name="c"><geometry>{}
 </geometry></collision></link></model></sdf>"""

@@ -9,31 +9,27 @@ import logging
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ZERO, Fault, ModelError, PluginError, Pose, Vector, compose, report, rotate
-from ..core.arrays import rotation_matrix
-from ..description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
-from ..runtime import Link, Listener, Model, World
-from . import ray_shapes
-from .link_solids import LinkSolids, corners_of
-from .ray_fan import Indices, Patches, RayFan
-from .ray_mesh import RayMesh, build_later
-
-if TYPE_CHECKING:
-    from .base import Sensor
+from ...core import ZERO, Fault, ModelError, PluginError, Pose, Vector, compose, report, rotate
+from ...core.arrays import rotation_matrix
+from ...description import Box, Collision, Cylinder, Geometry, Mesh, Plane, Sphere
+from ...runtime import Link, Listener, Model, SensorPart, World
+from . import formulas
+from .fan import Indices, Patches, RayFan
+from .mesh import RayMesh, build_later
+from .solids import LinkSolids, corners_of
 
 Floats = NDArray[np.float64]
 
 Formula = Callable[[Floats, Floats, Floats], tuple[Floats, Floats]]
 _FORMULAS: dict[type, Formula] = {
-    Box: ray_shapes.box,
-    Cylinder: ray_shapes.cylinder,
-    Sphere: ray_shapes.sphere,
+    Box: formulas.box,
+    Cylinder: formulas.cylinder,
+    Sphere: formulas.sphere,
 }
 _MOST = 1 << 18  # ray-shape pairs in a batch: 30 MB at most
 MANY_RAYS, MAX_RAYS = 200_000, 5_000_000  # of all sensors of a world, each with one scan
@@ -48,7 +44,7 @@ class RayScene(Listener):
         self._engine, self._read = world.engine, (-1, -1)  # its counters, when poses were read
         self._known_meshes: dict[Mesh, Future[RayMesh]] = {}
         self._unreadable: set[Mesh] = set()  # of these an error was logged
-        self._rays: WeakKeyDictionary[Sensor, int] = WeakKeyDictionary()  # of a scan
+        self._rays: WeakKeyDictionary[SensorPart, int] = WeakKeyDictionary()  # of a scan
         self._reported = MANY_RAYS / 2  # rays in the last warning about their sum
         self._laid_out: object = None  # models
         self._lay_out([])
@@ -63,7 +59,7 @@ class RayScene(Listener):
             _SCENES[world] = cls(world)
         return _SCENES[world]
 
-    def add_rays(self, sensor: 'Sensor', rays: int) -> None:
+    def add_rays(self, sensor: SensorPart, rays: int) -> None:
         """Count the rays of a sensor, with a warning whenever the sum of all has doubled.
 
         Raises:
@@ -81,7 +77,7 @@ class RayScene(Listener):
             what = f"model '{sensor.model.name}', {sensor.called}: {total} rays, with those of all "
             report(Fault(f'{what}other sensors, take long; the simulation waits for each scan'))
 
-    def remove_rays(self, sensor: 'Sensor') -> None:
+    def remove_rays(self, sensor: SensorPart) -> None:
         """Count the rays of a sensor no more."""
         self._rays.pop(sensor, None)
         self._reported = max(MANY_RAYS / 2, min(self._reported, sum(self._rays.values())))
@@ -176,7 +172,7 @@ class RayScene(Listener):
         Args:
             shapes: (m,) ascending.
             ends: (m + 1,) where the pairs of each shape end; the first is 0.
-            start: (3, p), as in `ray_shapes`; so are `way` and `half`.
+            start: (3, p), as in `formulas`; so are `way` and `half`.
         """
         met = np.empty(way.shape[1])
         first = 0
@@ -184,7 +180,7 @@ class RayScene(Listener):
             last = int(np.searchsorted(shapes, self._ends[kind]))
             if last > first:
                 some = slice(ends[first], ends[last])
-                met[some] = ray_shapes.first_from(
+                met[some] = formulas.first_from(
                     least, *formula(start[:, some], way[:, some], half[:, some])
                 )
             first = last

@@ -16,9 +16,9 @@ from weakref import WeakSet
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Vector
-from ..description import Mesh
-from ..meshes import TriangleTree, read_mesh
+from ...core import Vector
+from ...description import Mesh
+from ...meshes import TriangleTree, read_mesh
 
 Floats = NDArray[np.float64]
 
@@ -94,7 +94,7 @@ class RayMesh:
         self._caster = caster(vertices - middle, faces)
 
     def meet(self, start: Floats, way: Floats, least: float) -> Floats:
-        """Return the distances of the first hits [m], as `ray_shapes.first_from`.
+        """Return the distances of the first hits [m], as `formulas.first_from`.
 
         Args:
             start: (3, p) relative to the centre of the mesh, in its axes [m].

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from rosbots_description.sim.description import Mesh
-from rosbots_description.sim.sensors import ray_mesh
+from rosbots_description.sim.sensors.rays import mesh as ray_mesh
 
 
 def test_a_fork_has_the_meshes_that_were_being_built(monkeypatch):

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Pose, Vector
-from ..core.arrays import rotation_matrices
+from ...core import Pose, Vector
+from ...core.arrays import rotation_matrices
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]

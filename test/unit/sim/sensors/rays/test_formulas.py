@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from rosbots_description.sim.sensors import ray_shapes
-from rosbots_description.sim.sensors.ray_fan import RayFan, Sweep
+from rosbots_description.sim.sensors.rays import formulas
+from rosbots_description.sim.sensors.rays.fan import RayFan, Sweep
 
 HALF = {'sphere': (0.7, 0.7, 0.7), 'box': (0.5, 0.8, 0.3), 'cylinder': (0.6, 0.6, 0.9)}
 EXACT = 1e-12  # [m]
@@ -28,7 +28,7 @@ def outside(kind, points):
 def meet(kind, starts, ways, least=0.0):
     starts, ways = np.array(starts, float).T, np.array(ways, float).T
     half = np.repeat(np.array([HALF[kind]]).T, starts.shape[1], axis=1)
-    return ray_shapes.first_from(least, *getattr(ray_shapes, kind)(starts, ways, half))
+    return formulas.first_from(least, *getattr(formulas, kind)(starts, ways, half))
 
 
 def many_rays(count=20_000):
@@ -152,7 +152,7 @@ def test_culling_keeps_every_ray_that_hits_a_box(rows, columns):
     needed = set()
     for shape, (centre, half) in enumerate(zip(centres, halves, strict=True)):
         start = -centre[:, None] + 0.0 * fan.ways
-        met = ray_shapes.first_from(0.0, *ray_shapes.box(start, fan.ways, half[:, None]))
+        met = formulas.first_from(0.0, *formulas.box(start, fan.ways, half[:, None]))
         needed |= {(shape, ray) for ray in np.flatnonzero(met < 4.0).tolist()}
     assert needed
     assert needed <= kept_by(fan, centres, np.linalg.norm(halves, axis=1), halves)
