@@ -2,7 +2,6 @@
 
 import math
 import random
-import time
 
 import pytest
 from support import SPAWN_POSE, box_urdf, empty_world, robot_spec, urdf_spec
@@ -12,7 +11,6 @@ from rosbots_description.sim.core.errors import SimError
 from rosbots_description.sim.core.transforms import Pose, Twist, from_rpy
 from rosbots_description.sim.description.physics_settings import PhysicsSettings
 from rosbots_description.sim.physics.bullet.client import pybullet
-from rosbots_description.sim.physics.bullet.tuning import Tuning
 
 BOX = urdf_spec(box_urdf('0.2 0.2 0.2', 1.0))
 # Two links on a joint with a spring, with an inertia that makes them tumble.
@@ -200,20 +198,3 @@ def test_unreferenced_snapshots_are_freed(world, monkeypatch):
     assert len(saved) == 1
     del snapshot
     assert not saved
-
-
-def test_restore_costs_as_much_as_some_steps():
-    with empty_world(Tuning(rest=math.inf)) as world:  # a world at rest makes no steps
-        world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
-        world.engine.step(2500)
-        snapshot = world.engine.snapshot()
-        restores, steps = [], []
-        for _ in range(9):
-            for times, work in (
-                (restores, lambda: world.engine.restore(snapshot)),
-                (steps, lambda: world.engine.step(100)),
-            ):
-                begin = time.process_time()
-                work()
-                times.append(time.process_time() - begin)
-        assert min(restores) < min(steps)
