@@ -9,6 +9,7 @@ Publishes:
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from itertools import chain
 from typing import Protocol
 
 import rospy
@@ -53,7 +54,7 @@ class ShownMarkers:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._links: dict[str, list[LinkView]] = {}  # by models
+        self._views: dict[str, list[LinkView]] = {}  # by models
         self._awaited: dict[str, Future[list[LinkView]]] = {}  # likewise
         self._seen, self._updates = NOTHING, 0
 
@@ -69,24 +70,23 @@ class ShownMarkers:
         markers = []
         if is_first:
             markers.append(clearance())
-            self._links.clear()
+            self._views.clear()
             self._awaited.clear()
             self._updates = 0
         for name in changes.removed:
             self._awaited.pop(name, None)
-            gone = self._links.pop(name, [])
-            markers += [removal(marker) for link in gone for marker in link.markers]
+            gone = self._views.pop(name, [])
+            markers += [removal(marker) for view in gone for marker in view.markers]
         refresh = self._updates % REFRESH == 0
         self._updates += 1
-        for links in self._links.values():
-            for link in links:
-                if refresh or link.link in changes.moved:
-                    markers += link.placed()
+        for view in chain.from_iterable(self._views.values()):
+            if refresh or view.link in changes.moved:
+                markers += view.placed()
         self._awaited |= {model.name: self._make(model) for model in changes.added}
         for name in [name for name, made in self._awaited.items() if made.done()]:
-            self._links[name] = self._awaited.pop(name).result()
-            for link in self._links[name]:
-                markers += link.placed()
+            self._views[name] = self._awaited.pop(name).result()
+            for view in self._views[name]:
+                markers += view.placed()
         return markers
 
     def _make(self, model: Model) -> Future[list[LinkView]]:
