@@ -60,9 +60,7 @@ def insert_model(server: Server, insertion: _Insertion) -> srv.InsertModelRespon
             prepared,
             pose=placed(server.world, prepared.pose, box, request.on_ground, request.beside),
         )
-    response = spawn_model(server, prepared)
-    if not response.success:
-        return _response(response)
+    response = spawn_model(server, prepared)  # never refused, since the name is free
     if request.joint_names:
         set_model_configuration(
             server,

@@ -119,6 +119,7 @@ def test_info_names_joints_and_links_by_their_scoped_names():
     lines = do(simulator, 'model', '-m', 'box', '-i')
     assert lines[:2] == ['name: "box"', 'is_static: false']
     assert '    y: -2.5' in lines
+    assert str(lines).count('{') == str(lines).count('}')
     assert lines[-6:-3] == ['joint {', '  name: "box::hinge"', '}']
     assert lines[-3:] == ['link {', '  name: "box::arm"', '}']
 

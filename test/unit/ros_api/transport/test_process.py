@@ -28,6 +28,17 @@ def test_node_start_does_not_sleep_once_registered(monkeypatch):
     assert sum(slept) < 0.01  # [s]
 
 
+def test_the_end_of_a_node_wakes_the_thread_of_its_registrations(monkeypatch):
+    hooks, thread = [], SimpleNamespace(cond=threading.Condition())
+    found = SimpleNamespace(listeners=[SimpleNamespace(), thread])
+    monkeypatch.setattr(registration, 'get_registration_listeners', lambda: found)
+    monkeypatch.setattr(rospy.core, 'add_shutdown_hook', hooks.append)
+    process._end_at_once()
+    with thread.cond:
+        threading.Thread(target=hooks[0], args=('the end',), daemon=True).start()
+        assert thread.cond.wait(PATIENCE)
+
+
 def test_a_registration_that_no_master_takes_ends_with_the_node(monkeypatch):
     monkeypatch.setattr(registration, 'is_shutdown', registration.is_shutdown)
     monkeypatch.setattr(rospy.core, '_in_shutdown', True)  # but not shut down yet
