@@ -88,7 +88,7 @@ ARROWS = {
     'batch': 'sim sim/core sim/plugins',
     'web/controls': 'sim/core sim/description',
     'web/site': 'web/controls',
-    'web/scene': 'sim/core sim/description sim/meshes sim/rendering web/controls web/site',
+    'web/scene': 'sim/core sim/description sim/meshes sim/rendering web/controls',
     'web/editing': 'sim/core sim/description web/controls web/site web/scene',
     'web/panels': 'sim/core sim/description sim/rendering web/controls web/site web/scene',
     'web': 'sim/core sim/description web/controls web/site web/scene web/editing web/panels',

@@ -4,8 +4,8 @@ from .camera_keys import HANDLERS, CameraKeys
 from .choice import Choice
 from .descriptions import chosen_links, friction, list_html, parts_html, scoped_name, state_html
 from .layout import BAR, CLOSE_SHEET, OPAQUE, PAD, lay_out
-from .notices import Notices, left_out, show
-from .panel import Panel, Value, attempt, fill
+from .notices import Notices, left_out, show_notice
+from .panel import Allow, Panel, Value, attempt, fill
 from .rate_limit import RateLimit
 from .reading import ReadingPanel
 from .text import STYLE, Rows, Words, markup, plain, table
@@ -20,6 +20,7 @@ __all__ = [
     'PAD',
     'SET_TITLE',
     'STYLE',
+    'Allow',
     'CameraKeys',
     'Choice',
     'Notices',
@@ -42,7 +43,7 @@ __all__ = [
     'parts_html',
     'plain',
     'scoped_name',
-    'show',
+    'show_notice',
     'state_html',
     'table',
 ]

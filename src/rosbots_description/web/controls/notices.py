@@ -41,10 +41,10 @@ class Notices(Panel):
     def _show(self, sentence: str) -> None:
         self._limit.take()
         for client in self._clients():
-            show(client, sentence)
+            show_notice(client, sentence)
 
 
-def show(client: viser.ClientHandle, sentence: str) -> None:
+def show_notice(client: viser.ClientHandle, sentence: str) -> None:
     """Show a sentence in a browser for a while."""
     client.add_notification(plain(sentence, MOST), '', auto_close_seconds=8.0)
 

@@ -11,6 +11,7 @@ from ...sim.description import SceneChange, ShownMotion
 
 logger = logging.getLogger(__name__)
 
+Allow = Callable[..., None]  # as `Site.allow_viewers`
 Value = TypeVar('Value')
 
 

@@ -7,8 +7,7 @@ from typing import Any, Protocol
 
 import viser
 
-from ..controls import PAD, CameraKeys, Choice, Panel
-from ..site import Allow
+from ..controls import PAD, Allow, CameraKeys, Choice, Panel
 
 HOLD = 0.6  # [s, wall] a command lasts; browsers repeat a held key after half a second
 # Ahead and left, -1 to 1, with teleop's keys. Viser lists neither comma nor full stop, but passes

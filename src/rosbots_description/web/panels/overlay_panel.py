@@ -6,9 +6,8 @@ import viser
 
 from ...sim.description import SceneChange, ShownModel
 from ...sim.rendering import Look
-from ..controls import Panel
+from ..controls import Allow, Panel
 from ..scene import OVERLAYS, SceneView, Selection, link_node
-from ..site import Allow
 
 
 def add_look(gui: viser.GuiApi, view: SceneView, lock: threading.RLock) -> None:

@@ -6,9 +6,8 @@ from typing import NamedTuple
 import viser
 
 from ...sim.description import SceneChange
-from ..controls import Panel, Words, plain
+from ..controls import Allow, Panel, Words, plain
 from ..scene import Selection
-from ..site import Allow
 
 MOST = 60  # rows that are shown; what is looked for is found by a part of its name
 

@@ -4,8 +4,7 @@ import numpy as np
 import viser
 
 from ...sim.description import ShownMotion
-from ..controls import Panel
-from ..site import Allow
+from ..controls import Allow, Panel
 from .selection import Selection
 
 FOLLOW, STOP = 'Follow the selection', 'Stop following'

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import viser
 
 from ...sim.core import Vector
-from ..controls import show
+from ..controls import show_notice
 
 FAR = 100.0  # [m] from the eye, up to which a click is on the ground
 MARK = '/clicked'
@@ -30,7 +30,7 @@ class GroundClicks:
             if client.client_id not in self._asked:
                 client.scene.on_click()(self._click)  # sent before the sentence, by its own scene
             self._asked[client.client_id] = receive
-        show(client, sentence)
+        show_notice(client, sentence)
 
     def mark(self, client: viser.ClientHandle, point: Vector) -> None:
         """Show a point in the scene [m], instead of that browser's last one."""
@@ -53,7 +53,7 @@ class GroundClicks:
     def _click(self, event: viser.SceneClickEvent) -> None:
         point = on_ground(event.ray_origin, event.ray_direction)
         if point is None:
-            show(event.client, 'That is not on the ground; click again, lower.')
+            show_notice(event.client, 'That is not on the ground; click again, lower.')
             return
         with self._lock:
             receive = self._asked.pop(event.client_id, None)

@@ -12,8 +12,7 @@ from viser import Icon
 
 from ...sim.core import Vector, as_vector
 from ...sim.description import ShownLink
-from ..controls import Panel
-from ..site import Allow
+from ..controls import Allow, Panel
 from .bounds import corners
 from .selection import Selection
 from .start_view import StartView

@@ -1,6 +1,6 @@
 """The server of the page: who gets in, and what a browser may make it do."""
 
 from .access import LOOPBACK
-from .site import Allow, Site, WindowError
+from .site import Site, WindowError
 
-__all__ = ['LOOPBACK', 'Allow', 'Site', 'WindowError']
+__all__ = ['LOOPBACK', 'Site', 'WindowError']

@@ -16,7 +16,7 @@ from viser._messages import FileTransferPartAck, GuiUpdateMessage
 from websockets.asyncio.server import ServerConnection
 from websockets.typing import Data
 
-from ..controls import RateLimit, left_out, show
+from ..controls import RateLimit, left_out, show_notice
 from .access import CONTROLS
 from .client_messages import MalformedError, Message, RefusedError, check_value, is_camera, read
 from .uploads import Upload, Uploads
@@ -95,7 +95,7 @@ class MessageGate:
     def greet(self, client: viser.ClientHandle) -> None:
         """Tell a browser that may only look so."""
         if not self.may_control(client):
-            show(client, LOOKS)
+            show_notice(client, LOOKS)
 
     def forget(self, client: viser.ClientHandle) -> None:
         """Forget the controls that only a browser had which has disconnected."""
@@ -301,7 +301,7 @@ class MessageGate:
         visitor.next_notice = time.monotonic() + PAUSE
         client = self._client(visitor)
         if client is not None:
-            show(client, sentence)
+            show_notice(client, sentence)
 
     def _client(self, visitor: Visitor) -> viser.ClientHandle | None:
         """Return viser's handle of a connection; None before its first camera message."""

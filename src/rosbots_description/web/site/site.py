@@ -17,8 +17,6 @@ from .loop_event import leave_to_loop
 from .message_gate import MAX_MESSAGE, MOST_CLIENTS, Control, Handler, MessageGate, Received
 from .policy import page_headers
 
-Allow = Callable[..., None]  # as `Site.allow_viewers`
-
 
 class WindowError(Exception):
     """The window cannot be opened; the message is one sentence."""
