@@ -102,13 +102,22 @@ class JointStatesLayout:
         )
 
 
-class LaserScanLayout:
-    """sensor_msgs/LaserScan of a frame; the times within a scan are 0."""
+class FrameLayout:
+    """A message of a frame: its header, and numbers."""
+
+    numbers: str  # as of `struct`
 
     def __init__(self, frame: str) -> None:
         """Note the name of the frame."""
         self._frame = _text(frame)
-        self._layout = struct.Struct(f'<4I{len(self._frame)}s7f')
+        self._layout = struct.Struct(f'<4I{len(self._frame)}s{self.numbers}')
+        self._size = self._layout.size - _SIZE
+
+
+class LaserScanLayout(FrameLayout):
+    """sensor_msgs/LaserScan of a frame; the times within a scan are 0."""
+
+    numbers = '7f'
 
     def pack(
         self,
@@ -125,20 +134,17 @@ class LaserScanLayout:
             angles: least, greatest and increment [rad].
             limits: least and greatest range [m].
         """
-        size = self._layout.size - _SIZE + 8 + 4 * (len(ranges) + len(intensities))
+        size = self._size + 8 + 4 * (len(ranges) + len(intensities))
         head = self._layout.pack(
             size, seq, *divmod(now_ns, NANOSECONDS), self._frame, *angles, 0.0, 0.0, *limits
         )
         return head + floats(ranges) + floats(intensities)
 
 
-class PointCloudLayout:
+class PointCloudLayout(FrameLayout):
     """sensor_msgs/PointCloud of a frame, with intensities in a channel without a name."""
 
-    def __init__(self, frame: str) -> None:
-        """Note the name of the frame."""
-        self._frame = _text(frame)
-        self._layout = struct.Struct(f'<4I{len(self._frame)}sI')
+    numbers = 'I'
 
     def pack(
         self,
@@ -159,21 +165,15 @@ class PointCloudLayout:
             + _text('')
             + floats(intensities)
         )
-        size = self._layout.size - _SIZE + len(tail)
-        return (
-            self._layout.pack(size, seq, *divmod(now_ns, NANOSECONDS), self._frame, len(positions))
-            + tail
-        )
+        size, count = self._size + len(tail), len(positions)
+        head = self._layout.pack(size, seq, *divmod(now_ns, NANOSECONDS), self._frame, count)
+        return head + tail
 
 
-class ImuLayout:
+class ImuLayout(FrameLayout):
     """sensor_msgs/Imu of a frame."""
 
-    def __init__(self, frame: str) -> None:
-        """Note the name of the frame."""
-        self._frame = _text(frame)
-        self._layout = struct.Struct(f'<4I{len(self._frame)}s4d9d3d9d3d9d')
-        self._size = self._layout.size - _SIZE
+    numbers = '4d9d3d9d3d9d'
 
     def pack(self, seq: int, now_ns: int, reading: ImuReading) -> bytes:
         """Return the message with the number `seq`, stamped `now_ns` [ns]."""
