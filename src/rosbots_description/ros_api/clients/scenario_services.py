@@ -1,7 +1,7 @@
 """The services of the running /gazebo that a scenario needs."""
 
 import contextlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import rospy
@@ -24,61 +24,55 @@ def spawn(model: ModelEntry, described: str) -> None:
     text = text.decode('utf-8', 'replace') if isinstance(text, bytes) else text
     pose = PoseMessage()
     fill_pose(pose, model.pose.pose())
-    call = _service(f'spawn_{"urdf" if tag == "robot" else "sdf"}_model', srv.SpawnModel)
-    _require(call(model.name, text, '', pose, ''))
+    service = f'spawn_{"urdf" if tag == "robot" else "sdf"}_model'
+    _require(_call(service, srv.SpawnModel, model.name, text, '', pose, ''))
 
 
 def delete(name: str) -> None:
     """Delete a model."""
-    _service('delete_model', srv.DeleteModel)(name)
+    _call('delete_model', srv.DeleteModel, name)
 
 
 def true_state(record: RecordEntry) -> Odometry | JointReading:
     """Return what is true of a record's model, link or joint."""
     if record.joint:
-        answer = _service('get_joint_properties', srv.GetJointProperties)(record.joint)
-        _require(answer)
+        answer = _require(_call('get_joint_properties', srv.GetJointProperties, record.joint))
         return JointReading(answer.position[0], answer.rate[0])
     if record.link:
-        answer = _service('get_link_state', srv.GetLinkState)(f'{record.model}::{record.link}', '')
-        _require(answer)
-        answer = answer.link_state
+        link = f'{record.model}::{record.link}'
+        answer = _require(_call('get_link_state', srv.GetLinkState, link, '')).link_state
     else:
-        answer = _service('get_model_state', srv.GetModelState)(record.model, '')
-        _require(answer)
+        answer = _require(_call('get_model_state', srv.GetModelState, record.model, ''))
     return Odometry(read_pose(answer.pose), read_twist(answer.twist))
 
 
 @contextlib.contextmanager
 def paused() -> Iterator[None]:
     """Pause physics for the length of a `with` statement."""
-    pause, unpause = _service('pause_physics', Empty), _service('unpause_physics', Empty)
-    pause()
+    _call('pause_physics', Empty)
     try:
         yield
     finally:
         with contextlib.suppress(ScenarioError):
-            unpause()
+            _call('unpause_physics', Empty)
 
 
-def _service(name: str, service_type: type[Any]) -> Callable[..., Message]:
-    """Return what calls a service; it raises a `ScenarioError` if there is no answer."""
+def _call(name: str, service_type: type[Any], *arguments: object) -> Message:
+    """Return the answer of a service; raise a `ScenarioError` if there is none."""
     path = f'/gazebo/{name}'
-
-    def call(*arguments: object) -> Message:
-        try:
-            rospy.wait_for_service(path, DEADLINE)
-            return rospy.ServiceProxy(path, service_type)(*arguments)
-        except rospy.ROSInterruptException:
-            raise
-        except rospy.ROSException:
-            raise ScenarioError(f'there is no service {path}; start the simulator') from None
-        except rospy.ServiceException as error:
-            raise ScenarioError(f'the call of {path} failed: {error}') from None
-
-    return call
+    try:
+        rospy.wait_for_service(path, DEADLINE)
+        return rospy.ServiceProxy(path, service_type)(*arguments)
+    except rospy.ROSInterruptException:
+        raise
+    except rospy.ROSException:
+        raise ScenarioError(f'there is no service {path}; start the simulator') from None
+    except rospy.ServiceException as error:
+        raise ScenarioError(f'the call of {path} failed: {error}') from None
 
 
-def _require(answer: Message) -> None:
+def _require(answer: Message) -> Message:
+    """Return an answer; raise a `ScenarioError` if it reports a failure."""
     if not answer.success:
         raise ScenarioError(answer.status_message)
+    return answer
