@@ -59,18 +59,11 @@ class Notice:
         """Show in the scene that the simulator has ended."""
         from visualization_msgs.msg import MarkerArray  # seldom needed, slow to import
 
-        from ..transport import init_node, is_node
+        from ..transport import init_anonymous_node, is_node
         from ..views.markers import notice
 
         if not is_node():
-            init_node(
-                'gzclient_notice',
-                [],
-                anonymous=True,
-                disable_signals=True,
-                disable_rostime=True,
-                disable_rosout=True,
-            )
+            init_anonymous_node('gzclient_notice', [])
         self._publisher = rospy.Publisher(MARKERS_TOPIC, MarkerArray, latch=True, queue_size=1)
         self._publisher.publish(MarkerArray([notice(NOTICE)]))
 

@@ -12,7 +12,13 @@ import rospy
 from genpy import Message
 
 from ...sim.core import SimError, printable
-from ..transport import NO_MASTER, has_service, init_node, is_master_running, require_address
+from ..transport import (
+    NO_MASTER,
+    has_service,
+    init_anonymous_node,
+    is_master_running,
+    require_address,
+)
 from .model_source import SourceError
 
 DONE, FAILED = 0, 1  # exit codes
@@ -79,14 +85,7 @@ def _has_reader(descriptor: int) -> bool:
 def _connect(node: str, ros_arguments: Sequence[str]) -> None:
     """Become a node, at once or not at all; the errors are those of `require_master`."""
     require_master(node)
-    init_node(
-        node,
-        ros_arguments,
-        anonymous=True,
-        disable_signals=True,
-        disable_rostime=True,
-        disable_rosout=True,
-    )
+    init_anonymous_node(node, ros_arguments)
 
 
 def _call(service: str, service_type: type[Any], **request: object) -> Message:

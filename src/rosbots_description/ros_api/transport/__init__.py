@@ -32,7 +32,7 @@ from .names import (
     search_parameter,
     topic_name,
 )
-from .process import init_node, is_node
+from .process import init_anonymous_node, init_node, is_node
 from .registrar import Registrar
 from .registrations import published_types, subscribed_types, watch_master
 from .senders import publisher_names, sender_of
@@ -62,6 +62,7 @@ __all__ = [
     'guard_messages',
     'has_service',
     'has_subscribers',
+    'init_anonymous_node',
     'init_node',
     'is_master_running',
     'is_node',

@@ -49,6 +49,18 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
         )
 
 
+def init_anonymous_node(name: str, arguments: Sequence[str]) -> None:
+    """Start a node with a unique name that leaves signals, /clock and /rosout alone."""
+    init_node(
+        name,
+        arguments,
+        anonymous=True,
+        disable_signals=True,
+        disable_rostime=True,
+        disable_rosout=True,
+    )
+
+
 def is_node() -> bool:
     """Tell whether this process has become a node."""
     return bool(rospy.core.is_initialized())
