@@ -18,7 +18,6 @@ from geometry_msgs.msg import Vector3, Vector3Stamped
 from sensor_msgs.msg import Imu, NavSatFix, NavSatStatus
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from ...sim.core import Vector
 from ...sim.sensors import Fix, HectorGps, HectorImu, ImuSensorPlugin, LinkImu
 from ..messages import ImuLayout
 from .adapter import Adapter
@@ -56,11 +55,6 @@ def fix_message(fix: Fix) -> NavSatFix:
     return message
 
 
-def velocity_message(velocity: Vector) -> Vector3Stamped:
-    """Return the message of a velocity."""
-    return Vector3Stamped(vector=Vector3(*velocity))
-
-
 IMU = Publishes('imu', Imu, serializer=imu_serializer)
 
 declare_topics(ImuSensorPlugin, IMU)
@@ -78,7 +72,7 @@ declare_topics(
         'velocity',
         Vector3Stamped,
         '<velocityTopicName>',
-        convert=velocity_message,
+        convert=lambda velocity: Vector3Stamped(vector=Vector3(*velocity)),
         frame='<frameId>',
         queue=10,
     ),

@@ -18,7 +18,6 @@ from ...sim.sensors import (
     LaserPlugin,
     RangePlugin,
     RingCloud,
-    Scan,
     VelodynePlugin,
 )
 from ..messages import LaserScanLayout, PointCloudLayout
@@ -42,11 +41,9 @@ _RING_FIELDS = [
 def scan_serializer(adapter: Adapter) -> Serializer:
     """Return what lays scans out."""
     layout = LaserScanLayout(adapter.frame(adapter.text('<frameName>')))
-
-    def serialize(number: int, now_ns: int, scan: Scan) -> bytes:
-        return layout.pack(number, now_ns, scan[2:5], scan[5:], scan.ranges, scan.intensities)
-
-    return serialize
+    return lambda number, now_ns, scan: layout.pack(
+        number, now_ns, scan[2:5], scan[5:], scan.ranges, scan.intensities
+    )
 
 
 def range_message(distance: Distance) -> Range:

@@ -30,14 +30,6 @@ from .conversions import read_vector
 from .pictures import decompressed, pixels
 
 
-def _picture(message: Image) -> ShownReading:
-    return ShownReading(picture=pixels(message))
-
-
-def _compressed(message: CompressedImage) -> ShownReading:
-    return ShownReading(picture=decompressed(message))
-
-
 def _scan(message: LaserScan) -> ShownReading:
     ranges = np.asarray(message.ranges)
     hit = (ranges >= message.range_min) & (ranges <= message.range_max)  # never for NaN
@@ -109,8 +101,8 @@ def _leaves(message: Message, name: str) -> list[tuple[str, list[float]]]:
 
 
 _SHOWN: dict[type[Any], Callable[[Any], ShownReading]] = {
-    Image: _picture,
-    CompressedImage: _compressed,
+    Image: lambda message: ShownReading(picture=pixels(message)),
+    CompressedImage: lambda message: ShownReading(picture=decompressed(message)),
     LaserScan: _scan,
     Range: _range,
     PointCloud2: _cloud,
