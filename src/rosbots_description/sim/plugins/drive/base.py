@@ -30,6 +30,7 @@ class Drive(PeriodicPlugin):
     twist_variances: tuple[float, ...] = NO_VARIANCES
     topic_names: Mapping[str, str] = {'command': '<commandTopic>', 'odometry': '<odometryTopic>'}
     hints: Mapping[str, str] = {'torque': ' (the motor limit is <wheelTorque>)'}
+    is_flat = False  # True: z is 0 in the reading of odometry, but not in the transform
 
     def read_frames(self, base: str) -> None:
         """Read the names of topics and frames; the robot's frame is `base` by default."""
@@ -57,15 +58,20 @@ class Drive(PeriodicPlugin):
         """Return the odometry of the current state, independent of the rate."""
         return world_odometry(*self.model.state())
 
-    def send_odometry(self, reading: Odometry, flat: bool = False) -> None:
-        """Send odometry in both forms; `flat`: z is 0 in the reading, but not in the transform."""
+    def report(self) -> None:
+        """Send odometry."""
+        if self.odometry_wanted:
+            self.send_odometry(self.read_odometry())
+
+    def send_odometry(self, reading: Odometry) -> None:
+        """Send odometry in both forms."""
         if self.odometry_transform.wanted:
             string = self.params.string
             self.odometry_transform.send(
                 FrameTransform(string('odometryFrame'), string('robotBaseFrame'), reading.pose)
             )
         if self.odometry.wanted:
-            if flat:
+            if self.is_flat:
                 (x, y, _), orientation = reading.pose
                 reading = Odometry(Pose((x, y, 0.0), orientation), reading.twist)
             self.odometry.send(reading)

@@ -70,11 +70,6 @@ class ForceBasedMove(Drive):
         pose, twist = self.model.state()
         return Odometry(compose(inverse(self._start), pose), world_odometry(pose, twist).twist)
 
-    def report(self) -> None:
-        """Send odometry."""
-        if self.odometry_wanted:
-            self.send_odometry(self.read_odometry())
-
 
 @register('libridgeback_ros_force_based_move.so')
 class RidgebackForceBasedMove(ForceBasedMove):

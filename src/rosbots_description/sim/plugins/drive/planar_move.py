@@ -24,6 +24,7 @@ class PlanarMove(Drive):
 
     prefix = 'PlanarMovePlugin (ns = {}) '
     missing = staticmethod(says_defaults_to)
+    is_flat = True
     keeps_rate = False
     every_step = True
 
@@ -55,7 +56,7 @@ class PlanarMove(Drive):
         if self.odometry_wanted:
             pose, now_ns = self.model.pose, self.world.clock.now_ns
             elapsed = (now_ns - self._measured_ns) / NANOSECONDS
-            self.send_odometry(Odometry(pose, self._twist(pose, elapsed)), flat=True)
+            self.send_odometry(Odometry(pose, self._twist(pose, elapsed)))
             self._measured_ns, self._measured = now_ns, pose
 
     def _twist(self, pose: Pose, elapsed: float) -> Twist:

@@ -7,7 +7,6 @@ Behaviour, defaults and timing are those of libgazebo_ros_skid_steer_drive.so in
 from ...plugin_registry import register
 from ..parameters import says_defaults_to
 from .base import Drive
-from .odometry import world_odometry
 
 JOINTS = ('leftFront', 'rightFront', 'leftRear', 'rightRear')
 DEFAULTS = ('left_front_joint', 'right_front_joint', 'left_rear_joint', 'right_rear_joint')
@@ -22,6 +21,7 @@ class SkidSteerDrive(Drive):
 
     prefix = 'GazeboRosSkidSteerDrive Plugin (ns = {}/) '
     missing = staticmethod(says_defaults_to)
+    is_flat = True
 
     def load(self) -> None:
         """Read all tags with upstream's defaults and in upstream's order; find the wheels."""
@@ -52,8 +52,3 @@ class SkidSteerDrive(Drive):
         radius = self.wheel_diameter / 2.0
         for wheel, rim in zip(self.wheels, (x - half, x + half) * 2, strict=True):
             wheel.set_motor(rim / radius, self.torque)
-
-    def report(self) -> None:
-        """Send odometry."""
-        if self.odometry_wanted:
-            self.send_odometry(world_odometry(*self.model.state()), flat=True)
