@@ -30,10 +30,10 @@ def extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
         case Mesh(path, scale):
             vertices, _ = read_mesh(path).triangles()
             points = (vertices * scale) @ turn.T + pose.position
-            return _stacked(points.min(axis=0), points.max(axis=0))
+            return np.array([points.min(axis=0), points.max(axis=0)])
         case Plane():
             return None
-    return _stacked(pose.position - reach, pose.position + reach)
+    return np.array([pose.position - reach, pose.position + reach])
 
 
 def rough_extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
@@ -44,7 +44,3 @@ def rough_extent(geometry: Geometry, pose: Pose) -> FloatArray | None:
         width, depth, height = np.abs(high - low).tolist()
         return extent(Box((width, depth, height)), compose(pose, Pose((x, y, z))))
     return extent(geometry, pose)
-
-
-def _stacked(low: FloatArray, high: FloatArray) -> FloatArray:
-    return np.array([low, high])

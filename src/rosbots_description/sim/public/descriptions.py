@@ -62,7 +62,7 @@ class Descriptions:
             text,
             name or own_name(text, source),
             source=source,
-            find_package=self._packages_of(source),
+            find_package=self.packages(None if source == _TEXT else source),
             find_model=self.find_model,
             find_file=self._files_of(source),
         )
@@ -98,9 +98,6 @@ class Descriptions:
                 f'<robot> (URDF) or <sdf>, not {f"<{tag}>" if tag else "missing"}'
             )
         return text, source, tag
-
-    def _packages_of(self, source: str) -> PackageSearch:
-        return self.packages(None if source == _TEXT else source)
 
     def _files_of(self, source: str) -> FileSearch:
         """Return the search for the files of a description; its own folder comes last."""

@@ -24,7 +24,7 @@ from ..description import (
     Sphere,
     Visual,
 )
-from ..meshes import MeshPart, read_mesh
+from ..meshes import read_mesh
 from ..runtime import NOTHING, Link, World
 from .gl import Appearance, Light, Scene, ScenePart
 from .shapes import mesh_corners, unit_box, unit_cylinder, unit_sphere, unit_square
@@ -132,14 +132,10 @@ def _surfaces(visual: Visual) -> Iterator[tuple[str, Triangles, Vector, Appearan
                 own = _appearance(part.reflection, part.rgba[3])._replace(texture=part.image)
                 yield (
                     f'{key} {number}',
-                    partial(_mesh_corners, part),
+                    partial(mesh_corners, part.vertices, part.faces, part.normals, part.texcoords),
                     scale,
                     appearance if visual.material else own,
                 )
-
-
-def _mesh_corners(part: MeshPart) -> NDArray[Any]:
-    return mesh_corners(part.vertices, part.faces, part.normals, part.texcoords)
 
 
 def _appearance(own: Reflection, alpha: float) -> Appearance:
