@@ -70,14 +70,11 @@ def parts_html(model: ShownModel, link: str | None, omissions: Sequence[str] = (
     joints = [_joint(one) for one in model.joints if link in (None, one.parent, one.child)]
     collisions = [_collision(one) for part in links for one in part.collisions]
     sensors = [f'{markup(one.name)}: {markup(one.type)}' for part in links for one in part.sensors]
-    missing = [markup(one) for one in omissions]
-    return ''.join(
-        (
-            list_html('Spawned without', missing),
-            list_html('Joints', joints),
-            list_html('Collisions', collisions),
-            list_html('Sensors', sensors),
-        )
+    return (
+        list_html('Spawned without', list(map(markup, omissions)))
+        + list_html('Joints', joints)
+        + list_html('Collisions', collisions)
+        + list_html('Sensors', sensors)
     )
 
 

@@ -112,7 +112,7 @@ class PlotPanel(ReadingPanel):
             self._show()
             self._read_chosen()
 
-    def _remove_curve(self, curve: str) -> None:
+    def _remove_curve(self, curve: str, _event: object) -> None:
         with self._lock:
             if curve in self._chart.curves:  # not removed by somebody else a moment ago
                 self._chart.remove(curve)
@@ -165,10 +165,7 @@ class PlotPanel(ReadingPanel):
                     self._boxes[curve] = box = self._site.gui.add_checkbox(
                         plain(curve), initial_value=True, hint='uncheck to remove'
                     )
-                    box.on_update(partial(self._uncheck, curve))
-
-    def _uncheck(self, curve: str, _event: object) -> None:
-        self._remove_curve(curve)
+                    box.on_update(partial(self._remove_curve, curve))
 
     def _tick(self) -> None:
         with self._lock:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import viser
 
-from ...sim.core import ModelError, Vector, add, as_vector
+from ...sim.core import ModelError, Pose, Vector, add, as_vector
 from ...sim.description import Inertial, Material, Plane, ShownLink, ShownModel, Visual
 from ...sim.description.inertia import principal_axes
 from ...sim.rendering import visual_gltf
@@ -61,14 +61,14 @@ def inertia(scene: viser.SceneApi, path: str, model: ShownModel, link: ShownLink
     """Show a box of uniform density with the mass and the inertia of the link."""
     if link.inertial is not None and not model.static:
         size, orientation = equal_box(link.inertial)
-        x, y, z, w = orientation
+        pose = Pose(link.inertial.pose.position, orientation)
         scene.add_box(
             path,
             INERTIA,
             size,
             opacity=0.5,
-            position=link.inertial.pose.position,
-            wxyz=(w, x, y, z),
+            position=pose.position,
+            wxyz=wxyz(pose),
             cast_shadow=False,
             receive_shadow=False,
         )
