@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+from unittest import mock
 
 from ..sim.core import one_line
 from .local_ray import ClusterError, own_folder, private_environment
@@ -169,8 +170,7 @@ def _connect(ray: ModuleType, **arguments: object) -> None:
         raise ClusterError(f'{what}: {_lines(error)[0]}') from None
 
 
-@contextlib.contextmanager
-def _silent() -> Iterator[None]:
+def _silent() -> contextlib.AbstractContextManager[object]:
     """Keep Ray's messages about lost workers off the console.
 
     Ray prints them even without `log_to_driver`, in a thread that runs from `init` until the end of
@@ -178,12 +178,7 @@ def _silent() -> Iterator[None]:
     """
     from ray._private import worker
 
-    say = worker.print_to_stdstream
-    worker.print_to_stdstream = lambda *_arguments, **_options: None
-    try:
-        yield
-    finally:
-        worker.print_to_stdstream = say
+    return mock.patch.object(worker, 'print_to_stdstream', lambda *_arguments, **_options: None)
 
 
 def _ray() -> ModuleType:

@@ -59,18 +59,14 @@ def private_environment() -> Iterator[None]:
         _read_environment()
 
 
-@contextlib.contextmanager
-def _patient_start() -> Iterator[None]:
+def _patient_start() -> contextlib.AbstractContextManager[object]:
     """Let Ray wait longer for the raylet to register; its own limit of 30 s has no setting."""
+    from unittest import mock  # slow to import, as is Ray
+
     from ray._private import services
 
     untyped: Any = services
-    get_node = untyped.get_node
-    untyped.get_node = _waiting(get_node)
-    try:
-        yield
-    finally:
-        untyped.get_node = get_node
+    return mock.patch.object(untyped, 'get_node', _waiting(untyped.get_node))
 
 
 def _waiting(get_node: Callable[P, T]) -> Callable[P, T]:

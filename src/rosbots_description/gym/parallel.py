@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
+from types import SimpleNamespace
 from typing import Any, cast
 
 import gymnasium
@@ -126,21 +127,11 @@ class ParallelEnv(AsyncVectorEnv[Any, Any]):
         raise raised from WorkerError(f'worker {index} failed:\n{trace}')
 
 
-class _Memory:
-    """An array in shared memory, as Gymnasium's functions take it."""
-
-    def __init__(self, array: np.ndarray[Any, Any]) -> None:
-        self._array = array
-
-    def get_obj(self) -> np.ndarray[Any, Any]:
-        return self._array
-
-
 def _memory(observations: Mapping[str, Any] | np.ndarray[Any, Any]) -> object:
-    """Return the shared memory that observations are read from."""
+    """Return the memory that observations are read from, as Gymnasium's functions take it."""
     if isinstance(observations, Mapping):
         return {name: _memory(part) for name, part in observations.items()}
-    return _Memory(observations)
+    return SimpleNamespace(get_obj=lambda: observations)
 
 
 def _cores(count: int) -> list[set[int]]:
