@@ -8,7 +8,7 @@ from .local_ray import ClusterError, remove_left_folders
 from .parameters import Parameters, Run
 from .policy import Commands, Policy, PolicyError, commands_of, load_policy
 from .records import JointReading, Statistics, check_vectors, value_at
-from .runner import Progress, Result, run
+from .runner import Progress, Result, count_rows, run
 from .scenario import ModelEntry, RecordEntry, Scenario, ScenarioError, ScenarioFile
 
 __all__ = [
@@ -30,6 +30,7 @@ __all__ = [
     'Statistics',
     'check_vectors',
     'commands_of',
+    'count_rows',
     'load_policy',
     'remove_left_folders',
     'run',

@@ -5,6 +5,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import closing
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .scenario import ScenarioError, ScenarioFile
@@ -83,6 +84,13 @@ def run(
             repeated = _collect(table, _rows(file, missing, workers, address), total, progress)
         table.finish()
         return Result(table.table(), repeated, table.fault)
+
+
+def count_rows(output: str | os.PathLike[str]) -> int:
+    """Return how many runs have a row in a folder, whatever has ended the batch."""
+    from .table import runs_in
+
+    return len(runs_in(Path(output)))
 
 
 def _as_file(scenario: Scenario, parameters: Mapping[str, Any] | None) -> ScenarioFile:

@@ -150,5 +150,14 @@ class Table:
         return True
 
 
+def runs_in(folder: Path) -> set[int]:
+    """Return the numbers of the runs whose rows are in a folder."""
+    found: set[int] = set()
+    for file in (folder / FINAL, *(folder / PARTS).glob('[0-9]*.parquet')):
+        with contextlib.suppress(OSError, pa.ArrowInvalid):
+            found.update(parquet.read_table(file, columns=['run']).column('run').to_pylist())
+    return found
+
+
 def _why(error: OSError) -> str:
     return os.strerror(error.errno) if error.errno else str(error)

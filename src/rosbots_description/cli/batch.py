@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import mmap
 import os
 import signal
 import sys
@@ -24,7 +23,6 @@ PASSED, NOT_PASSED, USAGE = 0, 1, 2  # exit codes
 FOLDER = 'batch_output'
 REASONS = 5  # that are printed, the most frequent ones
 _say, _fail = partial(say, 'batch'), partial(fail, 'batch', code=USAGE)
-_done = mmap.mmap(-1, 8)  # rows so far, shared with the parent process
 
 
 def _count(text: str) -> int:
@@ -72,10 +70,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "pip install '.[ray]' installs it"
         )
 
-    def count(rows: int, total: int, repeated: int) -> None:
-        _done[:] = rows.to_bytes(len(_done), 'little')
-        show(rows, total, repeated)
-
     try:
         with _bar() as show:
             result = run(
@@ -83,7 +77,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 workers=options.workers,
                 address=options.address,
                 output=output,
-                progress=count,
+                progress=show,
             )
     except (ScenarioError, ClusterError) as error:
         return _fail(str(error))
@@ -97,9 +91,11 @@ def _output(options: argparse.Namespace) -> Path:
 
 
 def _interrupted(output: Path) -> int:
+    from ..batch import count_rows
+
     _say(
-        f'interrupted; {int.from_bytes(_done[:], "little")} rows are in {output}, and the same '
-        'command makes the others'
+        f'interrupted; {count_rows(output)} rows are in {output}, and the same command makes the '
+        'others'
     )
     return INTERRUPTED
 

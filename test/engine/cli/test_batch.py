@@ -6,6 +6,7 @@ import pytest
 import yaml
 from support.batches import pushed_ball
 
+from rosbots_description.batch.table import Table
 from rosbots_description.cli import batch
 
 
@@ -34,6 +35,22 @@ def test_progress_is_shown_on_a_terminal(write, monkeypatch):
     monkeypatch.setenv('TERM', 'xterm')
     assert batch.main(write(conditions=[])) == 0
     assert '2/2' in terminal.getvalue()
+
+
+def test_an_interruption_says_what_is_in_the_folder(write, tmp_path, monkeypatch, capsys):
+    add = Table.add
+
+    def interrupted(table, row):
+        add(table, row)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Table, 'add', interrupted)
+    for rows in (1, 2):
+        assert batch.main(write(conditions=[])) == 130
+        assert capsys.readouterr().err == (
+            f'batch: interrupted; {rows} rows are in {tmp_path}/out, and the same command makes '
+            'the others\n'
+        )
 
 
 def test_reasons_are_printed_the_most_frequent_first(write, capsys):
