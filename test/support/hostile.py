@@ -83,11 +83,9 @@ def _link(name: str, inside: str = '') -> str:
     return f'<link name="{name}">{_INERTIAL}{inside}</link>\n'
 
 
-def _joint(name: str, parent: str, child: str, kind: str = 'fixed', inside: str = '') -> str:
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-        f'{inside}</joint>\n'
-    )
+def _joint(name: str, parent: str, child: str, kind: str) -> str:
+    ends = f'<parent link="{parent}"/><child link="{child}"/>'
+    return f'<joint name="{name}" type="{kind}">{ends}</joint>\n'
 
 
 def _mesh(path: str | os.PathLike) -> str:
@@ -104,136 +102,124 @@ def _include(uri: str) -> str:
     return f'<sdf version="1.6"><world name="w"><include><uri>{uri}</uri></include></world></sdf>'
 
 
-@_made('urdf')
-def deep_nesting(_: Path) -> str:
-    """Elements nested 201 deep."""
-    return _robot('<a>' * 200 + '</a>' * 200)
+def _chain(count: int, kind: str) -> str:
+    """Return a robot of links in a row, on joints of a type."""
+    joints = (_joint(f'j{i}', f'l{i}', f'l{i + 1}', kind) for i in range(count - 1))
+    return _robot(*(_link(f'l{i}') for i in range(count)), *joints)
 
 
-@_made('urdf')
-def deeper_than_the_stack(_: Path) -> str:
-    """Elements nested 20 000 deep."""
-    return _robot('<a>' * 20_000 + '</a>' * 20_000)
+def _star(count: int, inside: str, kind: str, *parts: str) -> str:
+    """Return a robot of links with something inside, all on joints of a type to the first link."""
+    links = (_link(f'l{i}', inside) + _joint(f'j{i}', 'a', f'l{i}', kind) for i in range(count))
+    return _robot(_link('a'), *links, *parts)
 
 
-@_made('urdf')
-def many_attributes(_: Path) -> str:
-    """As many attributes as the text may have; libxml2 would take hours."""
-    return f'<robot {" ".join(f"a{i}={chr(34) * 2}" for i in range(800_000))}/>'
+def _attributes(count: int) -> str:
+    return ' '.join(f'a{i}=""' for i in range(count))
 
 
-@_made('urdf')
-def many_namespaces(_: Path) -> str:
-    """The same with namespace declarations."""
-    return f'<robot {" ".join(f"xmlns:a{i}={chr(34)}u{chr(34)}" for i in range(300_000))}/>'
-
-
-@_made('urdf')
-def attributes_never_closed(_: Path) -> str:
-    """The same in a tag that is never closed."""
-    return f'<robot {" ".join(f"a{i}={chr(34) * 2}" for i in range(800_000))}'
-
-
-@_made('urdf')
-def many_elements(_: Path) -> str:
-    """A million elements."""
-    return _robot('<a/>' * 1_000_000)
-
-
-@_made('urdf')
-def hundred_megabytes_of_blanks(_: Path) -> str:
-    """A robot of 100 MB of white space."""
-    return _robot(' ' * 100_000_000)
-
-
-@_made('urdf')
-def hundred_megabytes_of_text(_: Path) -> str:
-    """100 MB that are no XML."""
-    return 'a' * 100_000_000
-
-
-@_made('urdf')
-def dollars_that_never_close(_: Path) -> str:
-    """Four million times ${, so that a naive search for ${...} takes quadratic time."""
-    return _robot(_link('a'), f'<a>{"${" * 4_000_000}</a>')
-
-
-@_made('urdf')
-def long_attribute(_: Path) -> str:
-    """A number of a million digits and a word; the error message must not quote it all."""
-    return _robot(
-        _link('a', _BALL.replace('<geometry>', f'<origin xyz="{"9" * 1_000_000} x"/><geometry>'))
-    )
-
-
-@_made('urdf')
-def long_name(_: Path) -> str:
-    """A name longer than the engine's buffers."""
-    return _robot(_link('a' * 1100))
-
-
-@_made('urdf')
-def long_chain_of_joints(_: Path) -> str:
-    """One joint more than the engine can hold."""
-    return _robot(
-        *(_link(f'l{i}') for i in range(129)),
-        *(_joint(f'j{i}', f'l{i}', f'l{i + 1}', 'continuous') for i in range(128)),
-    )
-
-
-@_made('urdf')
-def long_chain_of_fixed_links(_: Path) -> str:
-    """Ten thousand links on fixed joints, which are reduced to one."""
-    return _robot(
-        *(_link(f'l{i}') for i in range(10_000)),
-        *(_joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(9_999)),
-    )
-
-
-@_made('urdf')
-def hundred_thousand_links(_: Path) -> str:
-    """As many links as the text may have elements."""
-    return _robot(*(f'<link name="l{i}"/>' for i in range(99_000)))
-
-
-@_made('sdf')
-def many_links_in_sdf(_: Path) -> str:
-    """Links without joints."""
-    return _sdf(''.join(f'<link name="l{i}"/>' for i in range(20_000)))
-
-
-@_made('urdf')
-def many_free_links(_: Path) -> str:
-    """Links on floating joints."""
-    return _robot(
-        _link('a'),
-        *(_link(f'l{i}', _BALL) + _joint(f'j{i}', 'a', f'l{i}', 'floating') for i in range(5_000)),
-    )
-
-
-@_made('urdf')
-def many_shapes(_: Path) -> str:
-    """Coincident collisions, each of which touches the ground."""
-    return _robot(_link('a', _BALL * 20_000))
-
-
-@_made('urdf')
-def many_surfaces(_: Path) -> str:
-    """More surfaces on one link than the engine allows auxiliary links."""
-    return _robot(
-        _link('a'),
-        *(
-            _link(f'l{i}', _BALL)
-            + _joint(f'j{i}', 'a', f'l{i}')
-            + f'<gazebo reference="l{i}"><mu1>{0.001 * i:.3f}</mu1></gazebo>'
-            for i in range(140)
+# Those that need no folder, made when they are needed, for some are large.
+_MADE |= {
+    # Elements nested 201 deep.
+    'deep_nesting': ('urdf', lambda _: _robot('<a>' * 200 + '</a>' * 200)),
+    # Elements nested 20 000 deep.
+    'deeper_than_the_stack': ('urdf', lambda _: _robot('<a>' * 20_000 + '</a>' * 20_000)),
+    # As many attributes as the text may have; libxml2 would take hours.
+    'many_attributes': ('urdf', lambda _: f'<robot {_attributes(800_000)}/>'),
+    # The same with namespace declarations.
+    'many_namespaces': (
+        'urdf',
+        lambda _: '<robot ' + ' '.join(f'xmlns:a{i}="u"' for i in range(300_000)) + '/>',
+    ),
+    # The same in a tag that is never closed.
+    'attributes_never_closed': ('urdf', lambda _: f'<robot {_attributes(800_000)}'),
+    # A million elements.
+    'many_elements': ('urdf', lambda _: _robot('<a/>' * 1_000_000)),
+    # A robot of 100 MB of white space.
+    'hundred_megabytes_of_blanks': ('urdf', lambda _: _robot(' ' * 100_000_000)),
+    # 100 MB that are no XML.
+    'hundred_megabytes_of_text': ('urdf', lambda _: 'a' * 100_000_000),
+    # Four million times ${, so that a naive search for ${...} takes quadratic time.
+    'dollars_that_never_close': (
+        'urdf',
+        lambda _: _robot(_link('a'), f'<a>{"${" * 4_000_000}</a>'),
+    ),
+    # A number of a million digits and a word; the error message must not quote it all.
+    'long_attribute': (
+        'urdf',
+        lambda _: _robot(
+            _link('a', _BALL.replace('<geometry>', f'<origin xyz="{"9" * 10**6} x"/><geometry>'))
         ),
-    )
+    ),
+    # A name longer than the engine's buffers.
+    'long_name': ('urdf', lambda _: _robot(_link('a' * 1100))),
+    # One joint more than the engine can hold.
+    'long_chain_of_joints': ('urdf', lambda _: _chain(129, 'continuous')),
+    # Ten thousand links on fixed joints, which are reduced to one.
+    'long_chain_of_fixed_links': ('urdf', lambda _: _chain(10_000, 'fixed')),
+    # As many links as the text may have elements.
+    'hundred_thousand_links': (
+        'urdf',
+        lambda _: _robot(*(f'<link name="l{i}"/>' for i in range(99_000))),
+    ),
+    # Links without joints.
+    'many_links_in_sdf': (
+        'sdf',
+        lambda _: _sdf(''.join(f'<link name="l{i}"/>' for i in range(20_000))),
+    ),
+    # Links on floating joints.
+    'many_free_links': ('urdf', lambda _: _star(5_000, _BALL, 'floating')),
+    # Coincident collisions, each of which touches the ground.
+    'many_shapes': ('urdf', lambda _: _robot(_link('a', _BALL * 20_000))),
+    # More surfaces on one link than the engine allows auxiliary links.
+    'many_surfaces': (
+        'urdf',
+        lambda _: _star(
+            140,
+            _BALL,
+            'fixed',
+            *(f'<gazebo reference="l{i}"><mu1>{0.001 * i:.3f}</mu1></gazebo>' for i in range(140)),
+        ),
+    ),
+    # Unknown names; a search for a similar one, each time among a thousand, would be slow.
+    'thousands_of_unknown_references': (
+        'urdf',
+        lambda _: _star(1000, '', 'fixed', *(f'<gazebo reference="k{i}"/>' for i in range(50_000))),
+    ),
+    # Models nested 190 deep; only the innermost has a link.
+    'models_in_models': (
+        'sdf',
+        lambda _: _sdf('<model name="m">' * 190 + '<link name="l"/>' + '</model>' * 190),
+    ),
+    # Five megabytes of random bytes.
+    'mesh_of_garbage': ('stl', lambda _: b'\xff\x00garbage\x80' * 500_000),
+    # Nodes nested 3000 deep.
+    'mesh_nested_deep': (
+        'dae',
+        lambda _: '<COLLADA>' + '<node>' * 3000 + '</node>' * 3000 + '</COLLADA>',
+    ),
+    # As `many_attributes`.
+    'mesh_of_many_attributes': ('dae', lambda _: f'<COLLADA {_attributes(800_000)}/>'),
+    # A material for each triangle.
+    'mesh_of_many_materials': (
+        'obj',
+        lambda _: _TRIANGLE + ''.join(f'usemtl m{i}\nf 1 2 3\n' for i in range(50_000)),
+    ),
+    # Twenty thousand models of one name, all of which must be renamed.
+    'world_of_one_name': (
+        'world',
+        lambda _: (
+            '<sdf version="1.6"><world name="w">'
+            + '<model name="m"><link name="l"/></model>' * 20_000
+            + '</world></sdf>'
+        ),
+    ),
+}
 
 
 @_made('sdf')
 def many_surfaces_that_stand(_: Path) -> str:
-    """The same in a static model."""
+    """As `many_surfaces`, in a static model."""
     return _sdf(
         '<static>1</static><link name="l">'
         + ''.join(
@@ -244,22 +230,6 @@ def many_surfaces_that_stand(_: Path) -> str:
         )
         + '</link>'
     )
-
-
-@_made('urdf')
-def thousands_of_unknown_references(_: Path) -> str:
-    """Unknown names; a search for a similar one, each time among a thousand, would be slow."""
-    return _robot(
-        _link('a'),
-        *(_link(f'l{i}') + _joint(f'j{i}', 'a', f'l{i}') for i in range(1000)),
-        *(f'<gazebo reference="k{i}"/>' for i in range(50_000)),
-    )
-
-
-@_made('sdf')
-def models_in_models(_: Path) -> str:
-    """Models nested 190 deep; only the innermost has a link."""
-    return _sdf('<model name="m">' * 190 + '<link name="l"/>' + '</model>' * 190)
 
 
 @_made('urdf')
@@ -324,43 +294,9 @@ def mesh_of_a_million_triangles(_: Path) -> bytes:
     return bytes(80) + struct.pack('<I', triangles.size) + triangles.tobytes()
 
 
-@_made('stl')
-def mesh_of_garbage(_: Path) -> bytes:
-    """Five megabytes of random bytes."""
-    return b'\xff\x00garbage\x80' * 500_000
-
-
-@_made('dae')
-def mesh_nested_deep(_: Path) -> str:
-    """Nodes nested 3000 deep."""
-    return '<COLLADA>' + '<node>' * 3000 + '</node>' * 3000 + '</COLLADA>'
-
-
-@_made('dae')
-def mesh_of_many_attributes(_: Path) -> str:
-    """As `many_attributes`."""
-    return f'<COLLADA {" ".join(f"a{i}={chr(34) * 2}" for i in range(800_000))}/>'
-
-
-@_made('obj')
-def mesh_of_many_materials(_: Path) -> str:
-    """A material for each triangle."""
-    return _TRIANGLE + ''.join(f'usemtl m{i}\nf 1 2 3\n' for i in range(50_000))
-
-
 @_made('urdf')
 def mesh_too_big(folder: Path) -> str:
     """A sparse file of a terabyte."""
     with open(folder / 'big.obj', 'wb') as file:
         file.truncate(10**12)
     return _mesh(folder / 'big.obj')
-
-
-@_made('world')
-def world_of_one_name(_: Path) -> str:
-    """Twenty thousand models of one name, all of which must be renamed."""
-    return (
-        '<sdf version="1.6"><world name="w">'
-        + '<model name="m"><link name="l"/></model>' * 20_000
-        + '</world></sdf>'
-    )
