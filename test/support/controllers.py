@@ -3,6 +3,10 @@
 import json
 from bisect import bisect_left
 
+import pytest
+
+from rosbots_description.sim.controllers import ControllerError
+
 from .recorded import DATA
 
 RECORDED = json.loads((DATA / 'controllers.json').read_text())
@@ -57,6 +61,13 @@ def aligned(rows, recorded, column, begin):
         return sum(abs(value - sampled(rows, time, column)) for (_, value), time in pairs)
 
     return min(map(moved, range(12)), key=difference)
+
+
+def refused(call, *arguments, **options):
+    """Return the sentences of the error that a call raises."""
+    with pytest.raises(ControllerError) as error:
+        call(*arguments, **options)
+    return error.value.sentences
 
 
 def start_controller(model, name, kind, parameters):

@@ -14,6 +14,7 @@ import rospy
 import yaml
 from support import ROOT, robot_spec, robot_urdf
 from support.programs import ran
+from support.refusals import exit_code
 
 from rosbots_description.sim.core import compose
 from rosbots_description.sim.core.arrays import rotation_matrix
@@ -181,23 +182,25 @@ def test_versions_of_the_packages_are_printed():
     assert (done.returncode, done.stdout) == (0, f'rosbots_navigation {version}\n'), done.stderr
 
 
+def drive_to_goals(monkeypatch, *goals):
+    """Return with which sentence the script ends."""
+    script = str(PACKAGE / 'scripts' / 'drive_to_goals.py')
+    monkeypatch.setattr(sys, 'argv', [script, *goals])
+    return exit_code(runpy.run_path, script, run_name='__main__')
+
+
 @pytest.mark.parametrize('words', [['1'], ['1,2,3,4'], ['1,x'], ['nan,1'], ['1,2', '']])
 def test_goals_that_cannot_be_read_are_refused_in_one_sentence(monkeypatch, words):
-    monkeypatch.setattr(sys, 'argv', ['drive_to_goals.py', *words])
-    with pytest.raises(SystemExit) as end:
-        runpy.run_path(str(PACKAGE / 'scripts' / 'drive_to_goals.py'), run_name='__main__')
-    assert end.value.code == (f'drive_to_goals.py: a goal is X,Y or X,Y,YAW, not {" ".join(words)}')
+    said = drive_to_goals(monkeypatch, *words)
+    assert said == f'drive_to_goals.py: a goal is X,Y or X,Y,YAW, not {" ".join(words)}'
 
 
 def test_drive_to_goals_says_in_a_sentence_that_there_is_no_master(monkeypatch, capsys):
-    script = PACKAGE / 'scripts' / 'drive_to_goals.py'
-    monkeypatch.setattr(sys, 'argv', [str(script), '1,2'])
     with socket.create_server(('localhost', 0)) as free:
         address = f'http://localhost:{free.getsockname()[1]}'
     monkeypatch.setenv('ROS_MASTER_URI', address)
-    with pytest.raises(SystemExit) as ended:
-        runpy.run_path(str(script), run_name='__main__')
-    assert ended.value.code == f'drive_to_goals.py: no ROS master answers at {address}'
+    said = drive_to_goals(monkeypatch, '1,2')
+    assert said == f'drive_to_goals.py: no ROS master answers at {address}'
 
 
 @pytest.mark.parametrize(
@@ -212,10 +215,6 @@ def test_drive_to_goals_says_in_a_sentence_that_the_master_has_died(monkeypatch,
     def fail(*_arguments, **_options):
         raise error
 
-    script = PACKAGE / 'scripts' / 'drive_to_goals.py'
-    monkeypatch.setattr(sys, 'argv', [str(script), '1,2'])
     monkeypatch.setattr('rosgraph.Master', lambda _name: SimpleNamespace(getUri=lambda: ''))
     monkeypatch.setattr(rospy, 'init_node', fail)
-    with pytest.raises(SystemExit) as ended:
-        runpy.run_path(str(script), run_name='__main__')
-    assert ended.value.code == f'drive_to_goals.py: {said}'
+    assert drive_to_goals(monkeypatch, '1,2') == f'drive_to_goals.py: {said}'

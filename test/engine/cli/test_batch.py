@@ -5,6 +5,7 @@ import io
 import pytest
 import yaml
 from support.batches import pushed_ball
+from support.refusals import exit_code
 
 from rosbots_description.batch.table import Table
 from rosbots_description.cli import batch
@@ -95,6 +96,5 @@ def test_rows_of_another_scenario_are_left_alone(write, capsys):
     [['a.yaml', '--workers', '-1'], ['a.yaml', '--workers', '2', '--address', 'auto'], []],
 )
 def test_what_is_no_command_is_refused(arguments, capsys):
-    with pytest.raises(SystemExit, match='2'):
-        batch.main(arguments)
+    assert exit_code(batch.main, arguments) == 2
     assert 'usage: ./rosbots batch' in capsys.readouterr().err

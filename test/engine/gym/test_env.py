@@ -2,13 +2,13 @@
 
 import logging
 import math
-import re
 import warnings
 
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from support.refusals import sentence_of
 
 import rosbots_description.gym  # noqa: F401  registers the tasks
 from rosbots_description.gym import SimEnv
@@ -151,9 +151,7 @@ def test_observation_is_a_dict_of_what_the_sensors_give(forward):
 )
 def test_action_that_cannot_be_given_is_named(forward, action, said):
     forward.reset(seed=0)
-    with pytest.raises(ValueError, match=re.escape(said)) as error:
-        forward.step(action)
-    assert '\n' not in str(error.value)
+    assert said in sentence_of(ValueError, forward.step, action)
 
 
 @pytest.mark.parametrize(
@@ -183,9 +181,7 @@ def test_action_that_cannot_be_given_is_named(forward, action, said):
     ],
 )
 def test_environment_that_cannot_be_made_is_named(options, kind, said):
-    with pytest.raises(kind) as error:
-        SimEnv(**options)
-    assert said in str(error.value)
+    assert said in sentence_of(kind, SimEnv, **options)
 
 
 def test_warnings_of_a_description_are_one_message_once_in_a_process(caplog):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support import XACRO
+from support.refusals import sentence_of
 
 from rosbots_description.gym import Randomisation, SimEnv
 from rosbots_description.sim import NotFoundError, Pose, SimError
@@ -117,9 +118,7 @@ def test_noise_of_a_sensor_differs_between_seeds_only():
     ],
 )
 def test_randomisation_that_cannot_be_is_named(given, kind, said):
-    with pytest.raises(kind) as error:
-        Still(randomise=Randomisation(**given), settle=0.1)
-    assert said in str(error.value)
+    assert said in sentence_of(kind, lambda: Still(randomise=Randomisation(**given), settle=0.1))
 
 
 @pytest.mark.parametrize('given', [1, True, 'all', {'mass': (1.0, 2.0)}, Randomisation])

@@ -2,6 +2,7 @@
 
 import pytest
 from support import ROOT
+from support.refusals import exit_code
 
 from rosbots_description.cli import gz
 
@@ -23,9 +24,7 @@ def test_help_names_every_command_and_gazebos_long_options(capsys):
         ('topic', '--echo TOPIC'),
         ('physics', '--update-rate HZ'),
     ):
-        with pytest.raises(SystemExit) as end:
-            gz.main(['help', command])
-        assert end.value.code == 0
+        assert exit_code(gz.main, ['help', command]) == 0
         assert option in capsys.readouterr().out
 
 
@@ -57,9 +56,7 @@ def test_a_command_that_is_not_there_says_so_in_one_sentence(command, capsys):
     ],
 )
 def test_wrong_usage_ends_with_2_and_names_the_option(arguments, complaint, capsys):
-    with pytest.raises(SystemExit) as end:
-        gz.main(arguments)
-    assert end.value.code == 2
+    assert exit_code(gz.main, arguments) == 2
     assert complaint in capsys.readouterr().err
 
 

@@ -5,6 +5,7 @@ import logging
 import pytest
 from support import ROOT
 from support.programs import python
+from support.refusals import exit_code
 
 from rosbots_description.cli.gzserver import main, parser, remarks, split_remappings
 from rosbots_description.ros_api.node import node
@@ -51,9 +52,7 @@ def test_value_of_an_option_is_not_taken_as_the_world(option):
 
 @pytest.mark.parametrize('option', ['-v', '--version'])
 def test_version_is_one_line(option, capsys):
-    with pytest.raises(SystemExit) as ended:
-        main([option])
-    assert ended.value.code == 0
+    assert exit_code(main, [option]) == 0
     (line,) = capsys.readouterr().out.splitlines()
     assert 'PyBullet' in line
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from support import ROOT
+from support.refusals import exit_code
 
 from rosbots_description.cli import gzweb, page_token
 
@@ -55,8 +56,7 @@ def test_a_token_that_cannot_be_used_is_told_in_a_sentence(arguments, token, mon
 
 
 def test_a_token_is_no_argument(capsys):
-    with pytest.raises(SystemExit):
-        gzweb.main(['--token', 'x' * 20])
+    assert exit_code(gzweb.main, ['--token', 'x' * 20]) == 2
     assert 'unrecognized' in capsys.readouterr().err
 
 
@@ -74,8 +74,7 @@ def test_a_token_of_a_file_that_others_can_read_is_refused(tmp_path, capsys):
 
 @pytest.mark.parametrize('number', ['0', '-1', '1001', '2.5', 'many', '', '\u0665'])
 def test_a_number_of_viewers_that_cannot_be_is_refused(number, capsys):
-    with pytest.raises(SystemExit):
-        gzweb.main([f'--max-viewers={number}'])
+    assert exit_code(gzweb.main, [f'--max-viewers={number}']) == 2
     assert f"'{number}' is no number from 1 to 1000" in capsys.readouterr().err
 
 

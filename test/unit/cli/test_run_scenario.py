@@ -5,6 +5,7 @@ from unittest.mock import Mock
 import pytest
 import yaml
 from support.batches import pushed_ball
+from support.refusals import exit_code
 
 from rosbots_description.batch import ScenarioError
 from rosbots_description.cli import run_scenario
@@ -46,6 +47,5 @@ def test_a_run_by_hand_prints_its_row_or_one_sentence(
 
 
 def test_what_is_no_command_is_refused(capsys):
-    with pytest.raises(SystemExit, match='2'):
-        run_scenario.main(['--gtest_output=xml:a.xml'])
+    assert exit_code(run_scenario.main, ['--gtest_output=xml:a.xml']) == 2
     assert 'usage: run_scenario' in capsys.readouterr().err

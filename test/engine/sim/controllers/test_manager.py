@@ -5,7 +5,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from support.controllers import EFFORT, POSITION, VELOCITY, spawn_arm, start_controller
+from support.controllers import EFFORT, POSITION, VELOCITY, refused, spawn_arm, start_controller
 
 from rosbots_description.sim import NotFoundError, World
 from rosbots_description.sim.controllers import ControllerError, ControllerManager
@@ -19,13 +19,6 @@ STATES = 'joint_state_controller/JointStateController'
 PID = 'effort_controllers/JointPositionController'
 GAINS = {'joint': 'joint1', 'pid': {'p': 100.0, 'i': 0.01, 'd': 10.0}}
 LATER = 300  # steps
-
-
-def refused(call, *arguments):
-    """Return the sentences of the error that a call raises."""
-    with pytest.raises(ControllerError) as error:
-        call(*arguments)
-    return error.value.sentences
 
 
 def started(world, kind=GROUP):

@@ -2,9 +2,7 @@
 
 import pytest
 from support.cars import BASE, RADIUS, SIDES, TRACK, car
-from support.controllers import start_controller
-
-from rosbots_description.sim.controllers import ControllerError
+from support.controllers import refused, start_controller
 
 ALL = tuple(name for name, _, _ in SIDES)
 TYPE = 'mecanum_drive_controller/MecanumDriveController'
@@ -51,8 +49,5 @@ def test_sizes_are_read_from_the_description(world):
 
 
 def test_a_missing_wheel_is_named(world):
-    with pytest.raises(ControllerError) as error:
-        spawned(world, PARAMETERS | {'back_left_wheel_joint': None})
-    assert error.value.sentences[0] == (
-        "Couldn't retrieve back_left_wheel_joint from param server."
-    )
+    sentence, *_ = refused(spawned, world, PARAMETERS | {'back_left_wheel_joint': None})
+    assert sentence == "Couldn't retrieve back_left_wheel_joint from param server."

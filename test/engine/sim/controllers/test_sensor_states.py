@@ -1,9 +1,7 @@
 """Sensors of a robot, reported by controllers."""
 
 import pytest
-from support.controllers import POSITION, arm, start_controller
-
-from rosbots_description.sim.controllers import ControllerError
+from support.controllers import POSITION, arm, refused, start_controller
 
 IMU = (
     '<gazebo reference="link3"><sensor name="imu" type="imu"><update_rate>200</update_rate>'
@@ -72,9 +70,7 @@ def test_a_restored_controller_goes_on(world):
 
 
 def test_a_robot_without_sensors_gets_upstreams_answer(world):
-    with pytest.raises(ControllerError) as error:
-        started(world, IMUS, '</robot>', {'publish_rate': 50})
-    assert error.value.sentences == (
+    assert refused(started, world, IMUS, '</robot>', {'publish_rate': 50}) == (
         'This controller requires a hardware interface of type '
         "'hardware_interface::ImuSensorInterface'. Make sure this is registered in the "
         'hardware_interface::RobotHW class.',
@@ -83,6 +79,4 @@ def test_a_robot_without_sensors_gets_upstreams_answer(world):
 
 
 def test_a_rate_is_needed(world):
-    with pytest.raises(ControllerError) as error:
-        started(world, IMUS, IMU, {})
-    assert error.value.sentences[0] == "Parameter 'publish_rate' not set"
+    assert refused(started, world, IMUS, IMU, {})[0] == "Parameter 'publish_rate' not set"

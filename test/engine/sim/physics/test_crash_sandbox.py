@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import pytest
 from support import box_urdf, burn, mesh_spec, robot_spec, urdf_spec
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core import Fault, process_watch, report
 from rosbots_description.sim.core.errors import ModelError
@@ -116,9 +117,8 @@ def steps_of_a_test(does=lambda: None, at_step=lambda: None):
 
 
 def fault_of(does, spec=CRATE):
-    with Sandbox(does=does) as sandbox, pytest.raises(ModelError) as caught:
-        sandbox.require(spec)
-    return str(caught.value)
+    with Sandbox(does=does) as sandbox:
+        return sentence_of(ModelError, sandbox.require, spec)
 
 
 def passes(spec, does=lambda: None):

@@ -7,6 +7,7 @@ import sys
 
 import pytest
 from support import ROOT, XACRO, box_urdf, empty_world, robot_spec
+from support.refusals import sentence_of
 
 from rosbots_description import sim
 from rosbots_description.sim import (
@@ -101,9 +102,7 @@ def test_xacro_arguments_are_passed(world, tmp_path):
     ],
 )
 def test_error_of_a_spawn_is_one_sentence(world, spawn, message):
-    with pytest.raises(SimError) as raised:
-        spawn(world)
-    assert message in str(raised.value)
+    assert message in sentence_of(SimError, spawn, world)
     assert list(world.models) == ['ground_plane']
 
 
@@ -184,9 +183,7 @@ def test_links_joints_and_plugins_are_found_by_name_or_the_error_lists_them(worl
         (world.model, 'robot'),
         (robot.plugin, "'differential_drive_controller' (libgazebo_ros_diff_"),
     ):
-        with pytest.raises(NotFoundError) as raised:
-            find('nothing')
-        assert known in str(raised.value)
+        assert known in sentence_of(NotFoundError, find, 'nothing')
 
 
 def test_models_links_joints_plugins_and_sensors_are_dicts_by_name(world):

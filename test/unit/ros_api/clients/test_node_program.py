@@ -2,6 +2,7 @@
 
 import pytest
 import rospy
+from support.refusals import exit_code
 
 from rosbots_description.ros_api.clients import node_program
 from rosbots_description.ros_api.clients.node_program import run_node
@@ -32,9 +33,7 @@ def master(monkeypatch):
     ],
 )
 def test_an_error_ends_with_one_sentence(master, error, sentence):
-    with pytest.raises(SystemExit) as ended:
-        run_node(failing(error))
-    assert ended.value.code == sentence
+    assert exit_code(run_node, failing(error)) == sentence
 
 
 @pytest.mark.parametrize('error', [rospy.ROSInterruptException(), KeyboardInterrupt()])

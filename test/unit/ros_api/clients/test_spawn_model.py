@@ -1,6 +1,7 @@
 """The command line of spawn_model and the XML it sends."""
 
 import pytest
+from support.refusals import exit_code
 
 from rosbots_description.cli.spawn_model import parse_arguments
 from rosbots_description.ros_api.clients import spawn_model
@@ -69,16 +70,12 @@ def test_model_of_the_database_is_searched_on_the_model_path(tmp_path):
     ],
 )
 def test_wrong_usage_exits_with_2_and_names_the_flag(arguments, error_message, capsys):
-    with pytest.raises(SystemExit) as end:
-        parse_arguments(arguments)
-    assert end.value.code == 2
+    assert exit_code(parse_arguments, arguments) == 2
     assert error_message in capsys.readouterr().err
 
 
 def test_help_exits_with_0(capsys):
-    with pytest.raises(SystemExit) as end:
-        parse_arguments(['-h'])
-    assert end.value.code == 0
+    assert exit_code(parse_arguments, ['-h']) == 0
     assert '-reference_frame' in capsys.readouterr().out
 
 

@@ -5,6 +5,7 @@ import os
 
 import pytest
 from support import ROOT
+from support.refusals import sentence_of
 
 from rosbots_description.ros_api.node import packages
 from rosbots_description.ros_api.node.world_loading import own_worlds, read_world
@@ -149,13 +150,10 @@ def test_models_in_the_users_own_folder_are_found(tmp_path, monkeypatch):
 
 
 def test_error_about_an_unknown_world_lists_the_known_ones():
-    with pytest.raises(NotFoundError) as caught:
-        read_world('worlds/mud.world')
-    sentence = str(caught.value)
+    sentence = sentence_of(NotFoundError, read_world, 'worlds/mud.world')
     assert "'worlds/mud.world'" in sentence
     assert 'GAZEBO_RESOURCE_PATH' in sentence
     assert 'worlds/shapes.world' in sentence
-    assert '\n' not in sentence
 
 
 @pytest.mark.parametrize(
@@ -169,11 +167,9 @@ def test_error_about_an_unknown_world_lists_the_known_ones():
 )
 def test_error_about_an_invalid_world_names_its_file(tmp_path, text, message):
     path = write(tmp_path / 'broken.world', text)
-    with pytest.raises(ModelError) as caught:
-        read_world(str(path))
-    assert str(path) in str(caught.value)
-    assert message in str(caught.value)
-    assert '\n' not in str(caught.value)
+    sentence = sentence_of(ModelError, read_world, str(path))
+    assert str(path) in sentence
+    assert message in sentence
 
 
 def test_messages_while_reading_are_kept_for_the_node(tmp_path, caplog):

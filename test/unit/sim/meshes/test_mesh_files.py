@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.collada import SCENE, VERTICES, collada
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.description import Mesh
@@ -149,11 +150,8 @@ def test_obj_has_a_part_for_each_material_grey_without_one(write):
 
 
 def error_message(path):
-    with pytest.raises(ModelError) as caught:
-        check_mesh(path)
-    sentence = str(caught.value)
+    sentence = sentence_of(ModelError, check_mesh, path)
     assert sentence.startswith(f"mesh file '{path}' ")
-    assert '\n' not in sentence
     return sentence
 
 

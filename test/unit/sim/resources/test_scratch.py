@@ -3,7 +3,6 @@
 import os
 import signal
 import stat
-import subprocess
 import sys
 import tempfile
 import threading
@@ -13,6 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from support import ROOT
 from support.patience import wait_until
+from support.programs import ran
+from support.refusals import sentence_of
 from support.surroundings import unshare
 
 from rosbots_description.sim.core.errors import ModelError
@@ -42,14 +43,8 @@ finally:
 
 def run(*command, **environment):
     python_path = os.pathsep.join([str(ROOT / 'src'), *sys.path])
-    return subprocess.run(
-        command,
-        env={'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **environment},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    environment = {'PATH': os.environ['PATH'], 'PYTHONPATH': python_path, **environment}
+    return ran(*command, env=environment)
 
 
 @pytest.fixture
@@ -102,9 +97,8 @@ def test_shared_memory_is_used_when_the_temporary_folder_is_gone(folder, places)
 def test_error_without_any_space_names_the_mesh_and_all_folders(folder, places):
     for place in places:
         place.rmdir()
-    with pytest.raises(ModelError) as caught:
-        folder.write('a.obj', b'content', '/models/bot.dae')
-    assert str(caught.value) == (
+    sentence = sentence_of(ModelError, folder.write, 'a.obj', b'content', '/models/bot.dae')
+    assert sentence == (
         f"mesh file '/models/bot.dae' cannot be made ready: nothing can be written in {places[0]} "
         f'(No such file or directory) nor in {places[1]} (No such file or directory); '
         'make room there, or set TMPDIR to a folder that has some'

@@ -1,6 +1,7 @@
 """Any text becomes a tree or one clear error message."""
 
 import pytest
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core import line_of, source_of
 from rosbots_description.sim.core.errors import ModelError
@@ -9,11 +10,8 @@ from rosbots_description.sim.resources.xml_parser import parse_xml, root_tag
 
 
 def error_message(text):
-    with pytest.raises(ModelError) as caught:
-        parse_xml(text, 'bot.urdf')
-    sentence = str(caught.value)
+    sentence = sentence_of(ModelError, parse_xml, text, 'bot.urdf')
     assert sentence.startswith('bot.urdf')
-    assert '\n' not in sentence
     return sentence
 
 

@@ -3,6 +3,7 @@
 import logging
 
 import pytest
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import ModelError, NotFoundError
 from rosbots_description.sim.core.transforms import Pose
@@ -45,12 +46,6 @@ def inside(include, directory):
         '</model></sdf>'
     )
     return load_sdf(text, 'm', source='m.sdf', find_model=ModelSearch([directory]))[0]
-
-
-def error_message(include, directory):
-    with pytest.raises(ModelError) as caught:
-        spawn(include, directory)
-    return str(caught.value)
 
 
 def test_spawned_include_has_the_requested_name(cone):
@@ -156,7 +151,7 @@ def test_circular_includes_are_rejected(tmp_path):
     for name, other in (('one', 'two'), ('two', 'one')):
         include = f'<include><uri>model://{other}</uri></include>'
         put(tmp_path, name, {'model.sdf': CONE.replace('<link', f'{include}<link')})
-    assert 'includes itself' in error_message('<uri>model://one</uri>', tmp_path)
+    assert 'includes itself' in sentence_of(ModelError, spawn, '<uri>model://one</uri>', tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -177,7 +172,7 @@ def test_unresolved_include_is_rejected(tmp_path, include, part):
     (tmp_path / 'bare').mkdir()
     put(tmp_path, 'dumb', {}, (('1.6', '../../secret.sdf'),))
     put(tmp_path, 'gone', {})
-    assert part in error_message(include, tmp_path)
+    assert part in sentence_of(ModelError, spawn, include, tmp_path)
 
 
 def test_world_is_found_as_given_and_on_the_search_path(tmp_path, monkeypatch):

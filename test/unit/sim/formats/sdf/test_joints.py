@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, compose
@@ -32,10 +33,9 @@ def only(*arguments, version='1.6', **options):
 
 
 def error_message(joints):
-    with pytest.raises(ModelError) as caught:
-        load(joints)
-    assert str(caught.value).startswith('m.sdf, line ')
-    return str(caught.value)
+    sentence = sentence_of(ModelError, load, joints)
+    assert sentence.startswith('m.sdf, line ')
+    return sentence
 
 
 def test_a_fixed_joint_stays_a_joint():

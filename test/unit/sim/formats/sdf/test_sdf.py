@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from support.collada import INSTANCE, collada
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose
@@ -58,11 +59,8 @@ def visual(inside):
 
 
 def error_message(body):
-    with pytest.raises(ModelError) as caught:
-        load(body)
-    sentence = str(caught.value)
+    sentence = sentence_of(ModelError, load, body)
     assert sentence.startswith('bot.sdf, line ')
-    assert '\n' not in sentence
     return sentence
 
 

@@ -4,6 +4,7 @@ import logging
 import math
 
 import pytest
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import ModelError
 from rosbots_description.sim.core.transforms import Pose, from_rpy
@@ -28,10 +29,9 @@ def physics(body):
 
 
 def error_message(body):
-    with pytest.raises(ModelError) as caught:
-        load(body)
-    assert str(caught.value).startswith('w.world, line ')
-    return str(caught.value)
+    sentence = sentence_of(ModelError, load, body)
+    assert sentence.startswith('w.world, line ')
+    return sentence
 
 
 def test_empty_world_has_the_builtin_ground_and_sun():

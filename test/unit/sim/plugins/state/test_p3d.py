@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 from support.fake_drive import collect, fake_model, make_drive, place, run
+from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import PluginError
 from rosbots_description.sim.core.transforms import (
@@ -65,9 +66,7 @@ def test_defaults_are_upstreams_and_logged_at_debug_level(caplog):
     ],
 )
 def test_invalid_tags_are_rejected_with_a_message(tags, sentence):
-    with pytest.raises(PluginError) as raised:
-        make(**tags)
-    assert str(raised.value).startswith(f'gazebo_ros_p3d plugin: {sentence}')
+    assert sentence_of(PluginError, make, **tags).startswith(f'gazebo_ros_p3d plugin: {sentence}')
 
 
 def test_old_names_of_the_offsets_are_reported_as_unknown(caplog):
