@@ -31,6 +31,12 @@ def python(code, *arguments):
     return ran_by_python('-c', code, *arguments)
 
 
+def lint_faults(code, name, *options):
+    """Return what ruff finds in the text of a module, which need not exist as a file."""
+    checked = ran('ruff', 'check', *options, '--stdin-filename', name, '-', input=code, cwd=ROOT)
+    return '' if checked.returncode == 0 else checked.stdout + checked.stderr
+
+
 def bash(script, *arguments, **environment):
     """Run lines of bash, up to the first that fails, in an environment with our ROOT alone."""
     environment = {'ROOT': str(ROOT), 'PATH': '/usr/bin:/bin', **environment}

@@ -1,13 +1,13 @@
 """The controller and the robot of doc/howto_add_a_controller.md run as printed."""
 
 import re
-import subprocess
 import sys
 
 import pytest
 import yaml
 from support import ROOT
 from support.controllers import spawn_arm, start_controller
+from support.programs import lint_faults
 
 from rosbots_description.sim import World
 from rosbots_description.sim.controllers import ControllerError
@@ -39,15 +39,7 @@ def package(monkeypatch, tmp_path):
 
 def test_the_controller_is_short_and_lint_clean():
     assert CODE.count('\n') < MOST_LINES
-    checked = subprocess.run(
-        ['ruff', 'check', '--stdin-filename', 'controllers.py', '-'],
-        input=CODE,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert checked.returncode == 0, checked.stdout + checked.stderr
+    assert not lint_faults(CODE, 'controllers.py')
 
 
 @pytest.mark.parametrize('own', ['rosbots_description', 'rosbots_simulator'])

@@ -3,13 +3,13 @@
 import contextlib
 import os
 import pickle
-import subprocess
 import tempfile
 from pathlib import Path
 
 import pytest
 from support import robot_spec
 from support.pictures import recorded_world, spawn_robot
+from support.programs import ran
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.physics import CrashSandbox, make_engine
@@ -60,13 +60,7 @@ def fixture_running():
 
 
 def reached(attempt):
-    run = subprocess.run(
-        ['/usr/bin/python3', '-c', REACH.format(other=OTHER, attempt=attempt)],
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd='/',
-    )
+    run = ran('/usr/bin/python3', '-c', REACH.format(other=OTHER, attempt=attempt), cwd='/')
     assert run.stdout.startswith('begun'), run.stderr
     return 'reached' in run.stdout
 

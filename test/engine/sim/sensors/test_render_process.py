@@ -4,7 +4,6 @@ import logging
 import os
 import signal
 import socket
-import subprocess
 import sys
 import time
 
@@ -14,6 +13,7 @@ from support import robot_spec
 from support.cameras import EDGES, LEVELS, process_of, stamps
 from support.patience import wait_until
 from support.pictures import recorded_world, spawn_robot
+from support.programs import ran
 
 from rosbots_description.sim.core.transforms import Pose
 
@@ -105,7 +105,7 @@ spawn_robot(world, 'camera_320')[1].read()
 print(renderer_of(world).process.process_id, flush=True)
 os.kill(os.getpid(), 9)
 """
-    run = subprocess.run([sys.executable, '-c', text], capture_output=True, text=True, check=False)
+    run = ran(sys.executable, '-c', text)
     drawing = int(run.stdout)
     wait_until(lambda: not os.path.exists(f'/proc/{drawing}'), 'the end of the renderer')
 

@@ -1,24 +1,19 @@
 """The plugin in doc/howto_add_a_plugin.md runs and is lint-clean as printed."""
 
-import importlib.util
 import math
-import re
-import subprocess
-import sys
 
 import pytest
 from std_msgs.msg import Float64
-from support import ROOT
 from support.fake_drive import fake_model, make_drive
+from support.howto import import_printed, printed_modules
+from support.programs import lint_faults
 from support.wire import Wire
 
 from rosbots_description.ros_api.adapters import registry as topics
 from rosbots_description.sim.plugin_registry import registry as plugins
 
-PAGE = ROOT / 'doc' / 'howto_add_a_plugin.md'
-BLOCK = re.compile(r'```python\n# src/(\S+)\.py\n(.*?)```', re.DOTALL)
 MOST_LINES = 60
-BLOCKS = dict(BLOCK.findall(PAGE.read_text(encoding='utf-8')))
+BLOCKS = printed_modules('howto_add_a_plugin.md')
 
 
 @pytest.fixture
@@ -27,13 +22,7 @@ def spinner(monkeypatch, tmp_path):
     monkeypatch.setattr(plugins, '_PLUGINS', dict(plugins._PLUGINS))
     monkeypatch.setattr(topics, '_TOPICS', dict(topics._TOPICS))
     for path, source in BLOCKS.items():
-        name = path.replace('/', '.')
-        file = tmp_path / f'{name}.py'
-        file.write_text(source, encoding='utf-8')
-        spec = importlib.util.spec_from_file_location(name, file)
-        module = importlib.util.module_from_spec(spec)
-        monkeypatch.setitem(sys.modules, name, module)
-        spec.loader.exec_module(module)
+        import_printed(path, source, tmp_path, monkeypatch)
     return plugins.plugin_class('libgazebo_ros_spinner.so')
 
 
@@ -44,15 +33,7 @@ def test_the_example_is_short():
 
 @pytest.mark.parametrize('path', BLOCKS)
 def test_the_example_is_lint_clean(path):
-    checked = subprocess.run(
-        ['ruff', 'check', '--stdin-filename', f'src/{path}.py', '-'],
-        input=BLOCKS[path],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert checked.returncode == 0, checked.stdout + checked.stderr
+    assert not lint_faults(BLOCKS[path], f'src/{path}.py')
 
 
 def test_the_example_serves_its_topics(spinner, monkeypatch, caplog):

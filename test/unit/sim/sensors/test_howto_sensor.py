@@ -1,13 +1,9 @@
 """The sensor in doc/howto_add_a_sensor.md runs and is lint-clean as printed."""
 
-import importlib.util
-import re
-import subprocess
-import sys
-
 import pytest
-from support import ROOT
 from support.fake_engine import FakeEngine
+from support.howto import import_printed, printed_modules
+from support.programs import lint_faults
 
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.formats.sdf.sdf import load_sdf
@@ -15,38 +11,20 @@ from rosbots_description.sim.plugin_registry import registry
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.runtime.world import World
 
-PAGE = ROOT / 'doc' / 'howto_add_a_sensor.md'
-((PATH, SOURCE),) = re.findall(
-    r'```python\n# src/(\S+)\.py\n(.*?)```', PAGE.read_text(encoding='utf-8'), re.DOTALL
-)
+((PATH, SOURCE),) = printed_modules('howto_add_a_sensor.md').items()
 MODEL = """<sdf version="1.6"><model name="m"><link name="a"><sensor name="high" type="altimeter">
   <pose>0 0 0.5 0 0 0</pose><update_rate>100</update_rate>
   <plugin name="p" filename="libgazebo_ros_altimeter.so"/></sensor></link></model></sdf>"""
 
 
 def test_the_example_is_lint_clean():
-    checked = subprocess.run(
-        ['ruff', 'check', '--stdin-filename', f'src/{PATH}.py', '-'],
-        input=SOURCE,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert checked.returncode == 0, checked.stdout + checked.stderr
+    assert not lint_faults(SOURCE, f'src/{PATH}.py')
 
 
 def test_the_example_measures_at_its_rate(monkeypatch, tmp_path):
     for table in ('_SENSORS', '_SENSOR_PLUGINS'):
         monkeypatch.setattr(registry, table, dict(getattr(registry, table)))
-    file = tmp_path / 'altimeter.py'
-    file.write_text(SOURCE, encoding='utf-8')
-    name = PATH.replace('/', '.')
-    spec = importlib.util.spec_from_file_location(name, file)
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, name, module)
-    spec.loader.exec_module(module)
-
+    import_printed(PATH, SOURCE, tmp_path, monkeypatch)
     world = World(make_engine=FakeEngine)
     described, _ = load_sdf(MODEL, 'bot', find_model=ModelSearch())
     model = world.spawn(described, 'bot', Pose((0.0, 0.0, 1.0)))

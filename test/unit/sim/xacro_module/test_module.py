@@ -1,10 +1,10 @@
 """Documents of xacro can be written whatever private functions minidom has."""
 
-import subprocess
 import sys
 from xml.dom import minidom
 
 from support import LIBRARY
+from support.programs import ran
 
 from rosbots_description.sim.xacro_module import import_xacro
 
@@ -41,12 +41,5 @@ def test_it_makes_no_difference_who_imports_xacro_first():
         'del minidom._write_data\n'
         'print(minidom.parseString("<a b=\'1\'/>").documentElement.toxml())\n'
     )
-    done = subprocess.run(
-        [sys.executable, '-c', program],
-        capture_output=True,
-        text=True,
-        cwd=LIBRARY.parent,
-        timeout=60,
-        check=False,
-    )
+    done = ran(sys.executable, '-c', program, cwd=LIBRARY.parent)
     assert (done.stdout, done.stderr) == ('<a b="1"/>\n', '')
