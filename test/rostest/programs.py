@@ -19,6 +19,28 @@ def find_program(package, name):
     return found[0]
 
 
+def ran(*command, stderr=subprocess.PIPE, timeout=3.0 * HOPELESS, check=False, **options):
+    """Return a program that has ended, with the texts that it has printed.
+
+    Args:
+        options: of `subprocess.run`.
+    """
+    return subprocess.run(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
+        text=True,
+        timeout=timeout,
+        check=check,
+        **options,
+    )
+
+
+def ran_merged(*command, **options):
+    """Return such a program, with its errors among its output; it has no input."""
+    return ran(*command, stdin=subprocess.DEVNULL, stderr=subprocess.STDOUT, **options)
+
+
 def end(process):
     """End a program, if it still runs, so that it takes leave of the ROS master.
 

@@ -3,7 +3,6 @@
 import contextlib
 import re
 import socket
-import subprocess
 import time
 import unittest
 from xmlrpc.client import ServerProxy
@@ -18,7 +17,7 @@ from gazebo_msgs.srv import (
     SpawnModel,
 )
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
-from programs import find_program
+from programs import find_program, ran
 from std_srvs.srv import Empty
 
 DEADLINE = 60.0  # [s, wall] only ends a hopeless wait; what it limits takes a fraction of it
@@ -111,14 +110,8 @@ SENSOR_BOX = """<robot name="box">
 
 def spawn_model(name, text):
     """Run spawn_model on a text until it ends; return the completed process."""
-    return subprocess.run(
-        [find_program('gazebo_ros', 'spawn_model'), '-urdf', '-stdin', '-model', name],
-        input=text,
-        capture_output=True,
-        text=True,
-        timeout=DEADLINE,
-        check=False,
-    )
+    program = find_program('gazebo_ros', 'spawn_model')
+    return ran(program, '-urdf', '-stdin', '-model', name, input=text)
 
 
 class SimulatorTest(unittest.TestCase):

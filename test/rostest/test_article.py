@@ -4,7 +4,6 @@
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import unittest
 from pathlib import Path
@@ -13,6 +12,7 @@ import debian_rviz
 import rospy
 import rostest
 from gazebo_msgs.srv import GetModelState
+from programs import ran
 from simulator import wait_until
 from terminal import Terminal
 
@@ -32,10 +32,7 @@ DELETE = ['rosservice', 'call', '/gazebo/delete_model', "model_name: 'rosbots'"]
 
 
 def output_of(*command, script=''):
-    result = subprocess.run(
-        command, input=script, capture_output=True, text=True, timeout=STEP, check=True
-    )
-    return result.stdout
+    return ran(*command, input=script, timeout=STEP, check=True).stdout
 
 
 class ArticleTest(unittest.TestCase):

@@ -4,7 +4,6 @@
 import contextlib
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -15,6 +14,7 @@ from xml.sax.saxutils import escape, quoteattr
 import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
+from programs import ran
 from server_process import ServerProcess
 from simulator import BOX, DEADLINE, GROUND, pose, proxy, wait_until
 
@@ -106,9 +106,7 @@ class EnvironmentsTest(unittest.TestCase):
 
     def require(self, *command, **environment):
         """Skip the test where the machine does not permit such namespaces."""
-        done = subprocess.run(
-            command, env={**os.environ, **environment}, text=True, capture_output=True, check=False
-        )
+        done = ran(*command, env={**os.environ, **environment})
         if done.returncode:
             reason = f'this machine does not permit it: {done.stderr.strip()}'
             print(f'SKIPPED {self._testMethodName}: {reason}')  # rosunit reports it as passed
@@ -233,14 +231,9 @@ class EnvironmentsTest(unittest.TestCase):
             for name, value in os.environ.items()
             if name not in ('ROS_HOSTNAME', 'ROS_IP')
         }
-        done = subprocess.run(
-            [*NOWHERE, 'sh', '-c', MEET, 'sh', self.folder / 'bär coded.urdf'],
-            env=surroundings | {'ROS_MASTER_URI': 'http://localhost:11311'},
-            capture_output=True,
-            text=True,
-            timeout=3 * DEADLINE,
-            check=False,
-        )
+        surroundings |= {'ROS_MASTER_URI': 'http://localhost:11311'}
+        command = (*NOWHERE, 'sh', '-c', MEET, 'sh', self.folder / 'bär coded.urdf')
+        done = ran(*command, env=surroundings)
         printed = done.stdout + done.stderr
         self.assertEqual(done.returncode, 0, printed)
         self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)

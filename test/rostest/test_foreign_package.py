@@ -4,7 +4,6 @@
 import io
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -14,6 +13,7 @@ import rostest
 from gazebo_msgs.msg import LinkStates
 from gazebo_msgs.srv import SpawnModel
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist
+from programs import ran_merged
 
 SOURCE = Path(__file__).resolve().parents[1] / 'data' / 'foreign_package'
 BUILD_LIMIT = 600.0  # [s, wall]; usually a tenth of that
@@ -38,16 +38,7 @@ class ForeignPackageTest(unittest.TestCase):
 
     @classmethod
     def run_command(cls, *command):
-        ended = subprocess.run(
-            command,
-            cwd=cls.workspace,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            timeout=BUILD_LIMIT,
-            check=False,
-        )
+        ended = ran_merged(*command, cwd=cls.workspace, timeout=BUILD_LIMIT)
         if ended.returncode != 0:
             raise AssertionError(f'{" ".join(command)} failed:\n{ended.stdout}')
         return ended.stdout

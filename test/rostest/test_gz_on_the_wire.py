@@ -11,8 +11,9 @@ from functools import partial
 import rospy
 import rostest
 from gazebo_msgs.srv import GetPhysicsProperties
+from programs import ran
 from rosbots_msgs.srv import SaveWorld
-from simulator import DEADLINE, GROUND, SimulatorTest, proxy
+from simulator import GROUND, SimulatorTest, proxy
 
 MODEL = """<sdf version="1.6"><model name="any"><link name="body">
   <collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
@@ -21,14 +22,7 @@ MODEL = """<sdf version="1.6"><model name="any"><link name="body">
 
 def run(*command, code=0, **options):
     """Return what a program prints, on the stream that fits its exit code."""
-    ended = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        timeout=3 * DEADLINE,
-        check=False,
-        **options,
-    )
+    ended = ran(*command, **options)
     if ended.returncode != code:
         raise AssertionError(f'{command} ended with {ended.returncode}: {ended.stderr}')
     return ended.stderr if code else ended.stdout

@@ -20,9 +20,10 @@ from gazebo_msgs.srv import (
     SpawnModel,
     SpawnModelRequest,
 )
+from programs import ran
 from raw_client import answer, request_bytes, service_connection
 from server_process import MasterProcess, ServerProcess
-from simulator import BOX, DEADLINE, LAST_TOPICS, page_address, pose, wait_until
+from simulator import BOX, LAST_TOPICS, page_address, pose, wait_until
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 from support.browser import Browser
@@ -44,14 +45,7 @@ class MasterRestartTest(unittest.TestCase):
 
     def _run(self, *command):
         """Run a ROS program with the server's master; return what it prints."""
-        return subprocess.run(
-            command,
-            env=self.server.environment,
-            capture_output=True,
-            text=True,
-            timeout=DEADLINE,
-            check=True,
-        ).stdout
+        return ran(*command, env=self.server.environment, check=True).stdout
 
     def _of_server(self):
         """Return the server's registrations: published topics, subscribed topics, services."""

@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -14,6 +13,7 @@ from pathlib import Path
 import debian_rviz
 import readme
 import rostest
+from programs import ran_merged
 from simulator import BOX, free_port, wait_until
 from terminal import Terminal, open_display
 
@@ -74,17 +74,8 @@ class Newcomer:
 
     def type(self, script, limit=STEP, check=True):
         """Return the output of a shell that runs these lines up to the first failure."""
-        ended = subprocess.run(
-            ['bash', '-ec', script],
-            env=self.environment,
-            cwd=self.home,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            timeout=limit,
-            check=False,
-        )
+        command = ('bash', '-ec', script)
+        ended = ran_merged(*command, env=self.environment, cwd=self.home, timeout=limit)
         if check and ended.returncode:
             raise AssertionError(f'{script!r} failed:\n{ended.stdout}')
         return ended.stdout

@@ -13,6 +13,7 @@ import unittest
 from pathlib import Path
 
 import rostest
+from programs import ran_merged
 
 ROOT = Path(__file__).resolve().parents[2]
 PARTS = (
@@ -64,16 +65,9 @@ class PipInstallTest(unittest.TestCase):
     @classmethod
     def run_there(cls, program, *arguments):
         """Run a program of the venv, without ROS."""
-        return subprocess.run(
-            [str(cls.venv / 'bin' / program), *arguments],
-            cwd=cls.folder,
-            text=True,
-            env={'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=PATIENCE,
-            check=False,
-        )
+        environment = {'PATH': '/usr/bin:/bin', 'HOME': str(cls.folder)}
+        command = (str(cls.venv / 'bin' / program), *arguments)
+        return ran_merged(*command, cwd=cls.folder, env=environment, timeout=PATIENCE)
 
     def test_all_imports_are_declared(self):
         checked = self.run_python('-m', 'pip', '--disable-pip-version-check', 'check')

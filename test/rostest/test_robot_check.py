@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """A robot is built, what its launch file starts is simulated, and its rostests run."""
 
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -9,6 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import rostest
+from programs import ran_merged
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECK = ROOT / 'tools' / 'robot_check' / 'check.py'
@@ -63,14 +63,7 @@ class RobotCheckTest(unittest.TestCase):
             path.write_text(content, encoding='utf-8')
 
     def check(self, *arguments):
-        done = subprocess.run(
-            [sys.executable, str(CHECK), *map(str, arguments)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            timeout=PATIENCE,
-            check=False,
-        )
+        done = ran_merged(sys.executable, str(CHECK), *map(str, arguments), timeout=PATIENCE)
         return done.returncode, done.stdout
 
     def test_robot_is_built_simulated_and_tested(self):

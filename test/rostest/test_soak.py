@@ -2,12 +2,12 @@
 """Half a minute of the soak test, and 15 spawns of its second part: no leaks, no faults."""
 
 import os
-import subprocess
 import sys
 import unittest
 from pathlib import Path
 
 import rostest
+from programs import ran_merged
 
 TESTS = Path(__file__).resolve().parents[1]  # has support/, with a browser for the page
 SOAK = Path(__file__).resolve().parents[2] / 'benchmark' / 'soak.py'
@@ -17,15 +17,9 @@ LIMIT = 800.0  # [s, wall] start and end included, on a busy machine
 
 class SoakTest(unittest.TestCase):
     def test_half_a_minute_has_no_faults(self):
-        ended = subprocess.run(
-            [sys.executable, str(SOAK), '--seconds', str(SECONDS)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            timeout=LIMIT,
-            check=False,
-            env=os.environ | {'PYTHONPATH': f'{TESTS}:{os.environ.get("PYTHONPATH", "")}'},
-        )
+        environment = os.environ | {'PYTHONPATH': f'{TESTS}:{os.environ.get("PYTHONPATH", "")}'}
+        command = (sys.executable, str(SOAK), '--seconds', str(SECONDS))
+        ended = ran_merged(*command, timeout=LIMIT, env=environment)
         print(ended.stdout)
         self.assertEqual(ended.returncode, 0, ended.stdout[-3000:])
 

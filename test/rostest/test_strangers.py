@@ -7,7 +7,6 @@ test/unit/web/site/test_strangers.py and test/unit/ros_api/window/test_xacro_san
 
 import math
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -18,7 +17,7 @@ from urllib.parse import urlsplit
 import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties
-from programs import memory_of
+from programs import memory_of, ran
 from server_process import ServerProcess
 from simulator import page_address, proxy
 from terminal import Terminal
@@ -77,14 +76,8 @@ class StrangersTest(unittest.TestCase):
 
     @unittest.skipUnless(os.geteuid() == 0, 'another user can only be tried by root')
     def test_1_another_user_of_the_machine_gets_no_socket(self):
-        said = subprocess.run(
-            ['/usr/bin/python3', '-I', '-c', KNOCK, str(urlsplit(self.address).port)],
-            check=True,
-            capture_output=True,
-            text=True,
-            user=NOBODY,
-            cwd='/',
-        ).stdout
+        command = ('/usr/bin/python3', '-I', '-c', KNOCK, str(urlsplit(self.address).port))
+        said = ran(*command, check=True, user=NOBODY, cwd='/').stdout
         self.assertIn('403 Forbidden', said)
         self.assertIn('needs the token', said)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import rospy
 import rostest
+from programs import ran
 from simulator import DEADLINE, SimulatorTest, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,18 +23,11 @@ OPTIONAL = {
 
 
 def rosrun(*arguments, **options):
-    return subprocess.run(
-        ['rosrun', *arguments],
-        capture_output=True,
-        text=True,
-        timeout=3 * DEADLINE,
-        check=True,
-        **options,
-    ).stdout
+    return ran('rosrun', *arguments, check=True, **options).stdout
 
 
 def succeeds(*command):
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+    return ran(*command).returncode == 0
 
 
 class ToolsTest(SimulatorTest):
