@@ -2,14 +2,13 @@
 
 import re
 import socket
-import threading
-from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 from support import ROOT
 from support.programs import bash, in_setup
+from support.serving import serving
 
 
 def set_up(script, workspace):
@@ -122,18 +121,6 @@ class _Deaf(BaseHTTPRequestHandler):
         """Print nothing."""
 
 
-@contextmanager
-def serving(server):
-    thread = threading.Thread(target=server.serve_forever)
-    thread.start()
-    try:
-        yield server.server_address[1]
-    finally:
-        server.shutdown()
-        thread.join()
-        server.server_close()
-
-
 def require_master_port(uri, *arguments):
     script = 'source "$ROOT/tools/environment.bash"; require_master_port "$@"'
     done = bash(script, *arguments, ROS_MASTER_URI=uri)
@@ -141,9 +128,11 @@ def require_master_port(uri, *arguments):
 
 
 def test_port_that_another_program_has_is_named():
-    with serving(HTTPServer(('localhost', 0), _Deaf)) as port:
+    server = HTTPServer(('localhost', 0), _Deaf)
+    port = server.server_port
+    with serving(server) as address:
         for given in (
-            (f'http://localhost:{port}/', 'gazebo_ros', 'empty_world.launch'),
+            (address, 'gazebo_ros', 'empty_world.launch'),
             ('http://localhost:1', '-p', str(port), 'a.launch'),
         ):
             code, errors = require_master_port(*given)
@@ -157,8 +146,8 @@ def test_port_that_another_program_has_is_named():
 def test_master_and_free_port_are_welcome():
     master = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
     master.register_function(lambda caller: (1, '', 7), 'getPid')
-    with serving(master) as port:
-        assert require_master_port(f'http://localhost:{port}') == (0, '')
+    with serving(master) as address:
+        assert require_master_port(address) == (0, '')
     with socket.socket() as free:
         free.bind(('localhost', 0))
         assert require_master_port(f'http://localhost:{free.getsockname()[1]}') == (0, '')

@@ -11,7 +11,6 @@ from rosbots_description.sim import Pose, SimError, World, from_rpy
 
 WORLDS = sorted(path.stem for path in (LIBRARY / 'worlds').glob('*.world'))
 AHEAD = 300  # steps over which a motion is compared
-SAME = 1e-5  # [m] contacts are found anew; the speed of a body that lies there changes by 5 mm/s
 DRIVEN = 0.002  # [m] the integral action of motors starts anew
 TURN = from_rpy(0.4, 0.3, 0.2)
 CRATE = f'<robot name="crate">{box_urdf("1 0.6 0.4", 2.0)}</robot>'

@@ -4,14 +4,13 @@ import math
 import os
 import shutil
 import struct
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.collada import SCENE, VERTICES, collada
+from support.programs import python
 from support.refusals import sentence_of
 
 from rosbots_description.sim.core.errors import ModelError
@@ -79,12 +78,7 @@ def test_collada_reader_is_imported_on_request_only():
         "before = 'collada' in sys.modules; loader.load_readers(); "
         "sys.exit(before or 'collada' not in sys.modules)"
     )
-    subprocess.run(
-        [sys.executable, '-c', program],
-        check=True,
-        timeout=60,
-        env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)},
-    )
+    assert python(program).returncode == 0
 
 
 def test_unit_and_node_transform_of_a_collada_file_are_applied(write):

@@ -184,27 +184,18 @@ def test_collisions_of_one_link_may_differ_in_friction(world):
     assert model.twist.linear[0] == pytest.approx(1.0, abs=0.02)
 
 
-@pytest.mark.parametrize('depth', [0.25, 0.1, 0.01])
-def test_box_spawned_inside_the_ground_rises_without_a_jump(world, depth):
-    box = world.spawn(urdf_spec(box_urdf('0.5 0.5 0.5', 1.0)), 'box', Pose((0, 0, 0.25 - depth)))
+@pytest.mark.parametrize(
+    ('depth', 'kp'), [(0.25, ''), (0.1, ''), (0.01, ''), (0.1, '1e5'), (0.1, '1e6'), (0.1, '1e9')]
+)
+def test_box_spawned_inside_the_ground_rises_without_a_jump(world, depth, kp):
+    block = f'<gazebo reference="box"><kp>{kp}</kp><kd>100</kd><maxVel>0.1</maxVel></gazebo>'
+    spec = urdf_spec(box_urdf('0.5 0.5 0.5', 2.0, block if kp else ''))
+    box = world.spawn(spec, 'box', Pose((0, 0, 0.25 - depth)))
     highest = 0.0
     for _ in range(100):
         world.run(20)
         highest = max(highest, box.pose.position[2])
     assert highest < 0.25 + 0.15
-    assert box.pose.position[2] == pytest.approx(0.25, abs=0.002)
-
-
-@pytest.mark.parametrize('kp', ['1e5', '1e6', '1e9'])
-def test_contact_stiffness_does_not_eject_a_body_from_the_ground(world, kp):
-    block = f'<gazebo reference="box"><kp>{kp}</kp><kd>100</kd><maxVel>0.1</maxVel></gazebo>'
-    spec = urdf_spec(box_urdf('0.5 0.5 0.5', 2.0, block))
-    box = world.spawn(spec, 'box', Pose((0.0, 0.0, 0.15)))
-    highest = 0.0
-    for _ in range(100):
-        world.run(20)
-        highest = max(highest, box.pose.position[2])
-    assert highest < 0.4
     assert box.pose.position[2] == pytest.approx(0.25, abs=0.002)
 
 
@@ -232,9 +223,8 @@ def test_diverged_model_does_not_affect_the_others(world, caplog):
     again = world.spawn(robot_spec(), 'rosbots', SPAWN_POSE)
     world.run(2 * SECOND)
     assert again.pose.position[2] == pytest.approx(-0.12, abs=0.01)
-    lines = [r.getMessage() for r in caplog.records if 'diverged:' in r.getMessage()]
-    assert len(lines) == 1
-    assert lines[0].startswith("model 'rosbots' diverged:")
+    (line,) = [text for text in caplog.messages if 'diverged:' in text]
+    assert line.startswith("model 'rosbots' diverged:")
 
 
 def test_two_coincident_boxes_separate_slowly(world):

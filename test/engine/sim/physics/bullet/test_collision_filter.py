@@ -27,13 +27,6 @@ def box():
     return urdf_spec(box_urdf('1 1 1', 1.0))
 
 
-def test_unconnected_links_of_a_model_do_not_collide(world):
-    pile = world.spawn(loose_links(), 'pile', Pose())
-    world.run(SECOND)
-    for link in pile.links.values():
-        assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)
-
-
 @pytest.mark.parametrize('static', [False, True])
 def test_models_spawned_after_unconnected_links_collide(world, static):
     # PyBullet reuses the ids of the links for the boxes.
@@ -101,9 +94,13 @@ def sdf_model(*parts):
     return load_sdf(text, 'm', source='test', find_model=lambda _: None)[0]
 
 
-def test_unconnected_links_do_not_collide_with_any_of_their_surfaces(world):
-    low, high = two_faced('low', '0 0 0.5'), two_faced('high', '0 0 2')
-    pile = world.spawn(sdf_model(low, high), 'm', Pose())
+@pytest.mark.parametrize(
+    'spec',
+    [loose_links(), sdf_model(two_faced('low', '0 0 0.5'), two_faced('high', '0 0 2'))],
+    ids=['one surface', 'two surfaces'],
+)
+def test_unconnected_links_of_a_model_do_not_collide(world, spec):
+    pile = world.spawn(spec, 'pile', Pose())
     world.run(SECOND)
     for link in pile.links.values():
         assert link.pose.position[2] == pytest.approx(0.5, abs=0.01)

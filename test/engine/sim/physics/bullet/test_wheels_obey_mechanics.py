@@ -546,7 +546,7 @@ def test_slippery_wheels_turn_a_robot_on_the_spot_as_commanded(world, mu, lean, 
     assert turned(model, world, 1500) / 1.5 == pytest.approx(turning, rel=0.02)
 
 
-def skid_steer(kp, flipped=False):
+def skid_steer(kp):
     """Return a robot of 12 kg on four wheels with a drive for each pair."""
     body = box('base', (0.5, 0.35, 0.15), 10.0)
     drives = ''

@@ -13,7 +13,6 @@ from rosbots_description.sim.core.transforms import Pose, Twist, compose, from_r
 from rosbots_description.sim.formats.urdf.urdf import load_urdf
 from rosbots_description.sim.runtime.world import World
 
-STEP = 1e-3  # [s] between rows of the recording, and step size
 NEAR = 0.01  # [m, m/s, rad/s]: effect of gravity and of some ms of motion
 
 

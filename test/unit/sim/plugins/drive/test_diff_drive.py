@@ -197,7 +197,6 @@ def test_nothing_is_computed_without_readers():
 
 def test_missing_tags_are_logged_with_upstreams_defaults(caplog):
     make(wheelSeparation=None, updateRate=None)
-    messages = [record.getMessage() for record in caplog.records]
     for text in (
         'missing <rosDebugLevel> default is na',
         'missing <wheelSeparation> default is 0.34',
@@ -206,7 +205,7 @@ def test_missing_tags_are_logged_with_upstreams_defaults(caplog):
         'missing <publishOdomTF> default is true',
         'missing <odometrySource> default is 1',
     ):
-        assert f'DiffDrive(ns = //): {text}' in messages
+        assert f'DiffDrive(ns = //): {text}' in caplog.messages
 
 
 @pytest.mark.parametrize(('tag', 'namespace'), [(None, 'robot'), ('', 'robot'), ('/r1', '/r1')])
@@ -232,19 +231,17 @@ def test_invalid_boolean_gives_the_default_with_a_warning(caplog):
 
 def test_unknown_tags_are_reported_once(caplog):
     make(torque='20', legacyMode='false', alwaysOn='true')
-    lines = [r.getMessage() for r in caplog.records if 'not read' in r.getMessage()]
-    assert len(lines) == 1
-    assert '<torque>, <legacyMode>' in lines[0]
+    (line,) = [text for text in caplog.messages if 'not read' in text]
+    assert '<torque>, <legacyMode>' in line
 
 
 def test_tags_that_contradict_the_wheels_give_one_warning(caplog):
     make(wheel_collisions=wheel_of(0.23))
-    lines = [r for r in caplog.records if 'contradict' in r.getMessage()]
-    assert len(lines) == 1
-    assert 'contradict the collision geometry (0.46 m and 0.8 m)' in lines[0].getMessage()
-    assert '0.88 of the commanded speed' in lines[0].getMessage()
-    assert 'or at 0.87 and 1.20 if it drags a caster' in lines[0].getMessage()
-    assert lines[0].levelno == logging.WARNING
+    (record,) = [one for one in caplog.records if 'contradict' in one.getMessage()]
+    assert 'contradict the collision geometry (0.46 m and 0.8 m)' in record.getMessage()
+    assert '0.88 of the commanded speed' in record.getMessage()
+    assert 'or at 0.87 and 1.20 if it drags a caster' in record.getMessage()
+    assert record.levelno == logging.WARNING
 
 
 @pytest.mark.parametrize(
@@ -267,10 +264,9 @@ def test_tags_that_fit_the_wheels_give_no_warning(caplog):
 
 def test_left_joint_on_the_right_side_gives_one_warning_with_the_cure(caplog):
     make(wheel_collisions=wheel_of(0.26), leftJoint='right', rightJoint='left')
-    lines = [r.getMessage() for r in caplog.records if 'this robot will' in r.getMessage()]
-    assert len(lines) == 1
-    assert "turn right when asked to turn left, for 'right' is on the right side" in lines[0]
-    assert lines[0].endswith('swap <leftJoint> and <rightJoint>')
+    (line,) = [text for text in caplog.messages if 'this robot will' in text]
+    assert "turn right when asked to turn left, for 'right' is on the right side" in line
+    assert line.endswith('swap <leftJoint> and <rightJoint>')
 
 
 def test_wheels_on_their_sides_give_no_warning(caplog):
