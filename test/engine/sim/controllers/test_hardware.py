@@ -132,36 +132,12 @@ def test_a_transmission_of_two_joints_is_named_and_the_others_work(world, caplog
     )
 
 
-@pytest.mark.parametrize(
-    ('old', 'new', 'text'),
-    [
-        (
-            '<transmission name="joint2_trans">',
-            '<transmission>',
-            'No name attribute specified for transmission.',
-        ),
-        (
-            '<transmission name="joint2_trans"><type>'
-            'transmission_interface/SimpleTransmission</type>',
-            '<transmission name="joint2_trans">',
-            "No type element found in transmission 'joint2_trans'.",
-        ),
-        (
-            '<actuator name="joint2_motor">',
-            '<actuator>',
-            "Failed to load actuators for transmission 'joint2_trans'.",
-        ),
-        (
-            f'<joint name="joint2"><hardwareInterface>{EFFORT}</hardwareInterface></joint>',
-            '<joint name="joint2"/>',
-            "No valid hardware interface element found in joint 'joint2'.",
-        ),
-    ],
-)
-def test_an_incomplete_transmission_is_skipped_with_upstreams_words(old, new, text, world, caplog):
-    plugin = spawned(world, lambda urdf: urdf.replace(old, new))
+def test_an_incomplete_transmission_is_skipped_with_upstreams_words(world, caplog):
+    plugin = spawned(
+        world, lambda urdf: urdf.replace('<actuator name="joint2_motor">', '<actuator>')
+    )
     assert list(plugin.manager.robot.joints) == ['joint1']
-    assert text in caplog.messages
+    assert "Failed to load actuators for transmission 'joint2_trans'." in caplog.messages
 
 
 def test_interfaces_without_a_prefix_work_and_are_named(world, caplog):
