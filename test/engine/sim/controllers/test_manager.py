@@ -256,25 +256,18 @@ def test_commands_survive_a_reset_of_the_simulation(world):
     assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
 
 
-def test_controllers_go_on_through_a_reset_of_the_world(world):
+@pytest.mark.parametrize(('reset', 'position'), [('reset_world', 0.5), ('reset_simulation', 0.0)])
+def test_a_trajectory_goes_on_through_a_reset_of_the_world_only(world, reset, position):
     model, controller = started(world, TRAJECTORY)
+    joint = model.joint('joint1')
     controller.command([0.5, -0.3], seconds=0.5)
     world.run(250)
-    world.reset_world()
+    getattr(world, reset)()
     world.run(400)
-    assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
-
-
-def test_a_trajectory_holds_after_a_reset_of_the_simulation(world):
-    model, controller = started(world, TRAJECTORY)
-    controller.command([0.5, -0.3], seconds=0.5)
-    world.run(250)
-    world.reset_simulation()
-    world.run(400)
-    assert model.joint('joint1').position == pytest.approx(0.0, abs=1e-3)
+    assert joint.position == pytest.approx(position, abs=1e-3)
     controller.command([0.5, -0.3], seconds=0.5)
     world.run(600)
-    assert model.joint('joint1').position == pytest.approx(0.5, abs=1e-3)
+    assert joint.position == pytest.approx(0.5, abs=1e-3)
 
 
 def test_a_controller_that_fails_does_not_stop_the_world(world, caplog):

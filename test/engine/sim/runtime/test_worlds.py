@@ -3,7 +3,6 @@
 import itertools
 import logging
 import math
-import time
 
 import pytest
 from support import LIBRARY, SETTLED, SPAWN_POSE, robot_spec
@@ -130,15 +129,6 @@ def test_the_line_is_closed_and_bends_gently():
         turn = to_rpy(following.pose.orientation)[2] - to_rpy(piece.pose.orientation)[2]
         assert abs(math.remainder(turn, math.tau)) < math.radians(9.1)
         assert piece.pose.position[2] + piece.geometry.size[2] / 2 == pytest.approx(0.005)
-
-
-def test_empty_world_file_is_read_quickly():
-    path = find_world('worlds/empty.world', [LIBRARY])
-    load(path.read_bytes())  # warm up
-    start = time.process_time()
-    for _ in range(20):
-        load(path.read_bytes())
-    assert (time.process_time() - start) / 20 < 0.02
 
 
 def test_physics_of_the_file_is_applied(world):
