@@ -3,7 +3,6 @@
 import json
 import subprocess
 from itertools import pairwise
-from pathlib import Path
 
 import rosgraph
 import rospy
@@ -16,13 +15,10 @@ from controller_manager_msgs.srv import (
 )
 from programs import find_program
 from rosgraph_msgs.msg import Log
-from simulator import SimulatorTest, hears, wait_until
+from simulator import DATA, SimulatorTest, hears, recorded, wait_until
 
-DATA = Path(__file__).resolve().parents[1] / 'data'
-ROBOTS = DATA / 'gazebo' / 'robots'
 RECORDED = json.loads((DATA / 'gazebo' / 'controller_interfaces.json').read_text())
-ARM = (ROBOTS / 'twolink.urdf').read_text()
-BURGER = (ROBOTS / 'burger_ros_control.urdf').read_text()
+ARM, BURGER = recorded('twolink'), recorded('burger_ros_control')
 MANAGER = (
     'list_controller_types',
     'list_controllers',

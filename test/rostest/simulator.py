@@ -5,17 +5,13 @@ import re
 import socket
 import time
 import unittest
+from pathlib import Path
 from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rosnode
 import rospy
-from gazebo_msgs.srv import (
-    DeleteModel,
-    GetModelState,
-    GetWorldProperties,
-    SpawnModel,
-)
+from gazebo_msgs.srv import DeleteModel, GetModelState, GetWorldProperties, SpawnModel
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from programs import find_program, ran
 from std_srvs.srv import Empty
@@ -23,6 +19,7 @@ from std_srvs.srv import Empty
 DEADLINE = 60.0  # [s, wall] only ends a hopeless wait; what it limits takes a fraction of it
 COMMANDS = '/part2_cmr/cmd_vel'
 GROUND = 'ground_plane'
+DATA = Path(__file__).resolve().parents[1] / 'data'
 BOX = """<robot name="box"><link name="body">
   <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
   <collision><geometry><box size="1 1 1"/></geometry></collision>
@@ -108,6 +105,12 @@ SENSOR_BOX = """<robot name="box">
 </robot>"""
 
 
+def recorded(robot):
+    """Return the URDF of a robot that was recorded in Gazebo."""
+    (file,) = DATA.rglob(f'{robot}.urdf')
+    return file.read_text(encoding='utf-8')
+
+
 def spawn_model(name, text):
     """Run spawn_model on a text until it ends; return the completed process."""
     program = find_program('gazebo_ros', 'spawn_model')
@@ -151,6 +154,16 @@ class SimulatorTest(unittest.TestCase):
     def spawn(self, name='rosbots', xml=None, at=None, frame='', namespace='/'):
         xml = rospy.get_param('robot_description') if xml is None else xml
         return self.spawn_service(name, xml, namespace, at or pose(), frame)
+
+    def spawn_recorded(self, robot, topics, z=0.0, namespace='/', change=str):
+        """Spawn a robot that was recorded in Gazebo as 'bot', and assert that it has these topics.
+
+        Args:
+            change: of its URDF.
+        """
+        before, text = topics_of(), change(recorded(robot))
+        self.assertTrue(self.spawn('bot', text, pose(z=z), namespace=namespace).success)
+        self.assertEqual(topics_of() - before, topics)
 
     def collect(self, topic, message_class):
         """Return a list to which the messages of a topic are appended; waits for a publisher.

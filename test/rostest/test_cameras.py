@@ -13,28 +13,26 @@ from PIL import Image as PilImage
 from rosbots_msgs.srv import Step
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from sensor_msgs.srv import SetCameraInfo
-from simulator import DEADLINE, SimulatorTest, pose, proxy, topics_of, wait_until
+from simulator import DEADLINE, SimulatorTest, pose, proxy, recorded, topics_of, wait_until
 from std_msgs.msg import Empty
-from test_sensors import ROBOTS, spacing
+from test_sensors import spacing
 
 IMAGES = ('image_raw', 'image_raw/compressed')  # the latter as with image_transport's plugin
 SETTINGS = ('parameter_descriptions', 'parameter_updates')
 
 
 class CameraTest(SimulatorTest):
-    def spawn_recorded(self, robot, folder, topics, namespace='/', plugin=None):
+    def spawn_camera(self, robot, folder, topics, namespace='/', plugin='libgazebo_ros_camera.so'):
         """Spawn a recorded robot and assert that its topics below `folder` are `topics`."""
-        before = topics_of()
-        text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
-        if plugin is not None:
-            text = text.replace('libgazebo_ros_camera.so', plugin)
-        self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
-        self.assertEqual(topics_of() - before, {f'{folder}/{topic}' for topic in topics})
+        self.spawn_recorded(
+            robot,
+            {f'{folder}/{topic}' for topic in topics},
+            namespace=namespace,
+            change=lambda text: text.replace('libgazebo_ros_camera.so', plugin),
+        )
 
     def test_images_and_camera_infos_have_equal_stamps(self):
-        self.spawn_recorded(
-            'camera_320', '/nsx/camera1', {*IMAGES, 'camera_info', *SETTINGS}, '/nsx'
-        )
+        self.spawn_camera('camera_320', '/nsx/camera1', {*IMAGES, 'camera_info', *SETTINGS}, '/nsx')
         infos = self.collect('/nsx/camera1/camera_info', CameraInfo)
         images = self.read('/nsx/camera1/image_raw', Image, 12)
         image = images[-1]
@@ -63,7 +61,7 @@ class CameraTest(SimulatorTest):
         text = re.sub(
             '<width>.*?</height>',
             '<width>800</width><height>800</height>',
-            (ROBOTS / 'camera_320.urdf').read_text(encoding='utf-8'),
+            recorded('camera_320'),
             flags=re.DOTALL,
         )
         self.assertTrue(self.spawn('bot', text, pose(z=0.0)).success)
@@ -84,7 +82,7 @@ class CameraTest(SimulatorTest):
         )
 
     def test_compressed_image_is_the_image(self):
-        self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
+        self.spawn_camera('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         compressed = self.read('/camera1/image_raw/compressed', CompressedImage, 2)
         images = self.collect('/camera1/image_raw', Image)
         wait_until(
@@ -102,7 +100,7 @@ class CameraTest(SimulatorTest):
         self.assertLess(away.mean(), 1.0)
 
     def test_subscriber_during_a_pause_gets_the_last_image(self):
-        self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
+        self.spawn_camera('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         self.read('/camera1/image_raw', Image, 2)
         self.pause()
         infos = self.collect('/camera1/camera_info', CameraInfo)
@@ -110,7 +108,7 @@ class CameraTest(SimulatorTest):
         self.assertEqual(infos, [])
 
     def test_clients_set_rate_and_camera_info(self):
-        self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
+        self.spawn_camera('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
         self.assertEqual(rospy.get_param('/camera1/imager_rate'), 2.0)
         client = Client('/camera1', timeout=DEADLINE)
         client.update_configuration({'imager_rate': 5.0})
@@ -124,7 +122,7 @@ class CameraTest(SimulatorTest):
         self.assertEqual((list(info.K), info.header.frame_id), (list(wanted.K), ''))
 
     def test_each_trigger_gives_one_image(self):
-        self.spawn_recorded(
+        self.spawn_camera(
             'camera_320',
             '/camera1',
             {*IMAGES, 'camera_info', 'image_trigger', *SETTINGS},
@@ -162,7 +160,7 @@ class CameraTest(SimulatorTest):
             for side in ('left', 'right')
             for topic in (*IMAGES, 'camera_info', *SETTINGS)
         }
-        self.spawn_recorded('multicamera', '/multisense', topics)
+        self.spawn_camera('multicamera', '/multisense', topics)
         left = self.collect('/multisense/left/image_raw', Image)
         right = self.read('/multisense/right/image_raw', Image, 5)
         wait_until(
@@ -170,7 +168,7 @@ class CameraTest(SimulatorTest):
         )
 
     def test_depth_camera_publishes_all_its_topics(self):
-        self.spawn_recorded(
+        self.spawn_camera(
             'openni_kinect',
             '/camera',
             {
@@ -195,7 +193,7 @@ class CameraTest(SimulatorTest):
 
     def test_robot_can_be_deleted_while_its_camera_is_subscribed(self):
         for _ in range(2):
-            self.spawn_recorded('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
+            self.spawn_camera('camera_320', '/camera1', {*IMAGES, 'camera_info', *SETTINGS})
             self.read('/camera1/image_raw', Image, 2)
             self.assertTrue(self.delete('bot').success)
             self.assertNotIn('/camera1/image_raw', topics_of())

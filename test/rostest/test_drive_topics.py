@@ -2,7 +2,6 @@
 """Topics of skid steer, planar and tricycle drives: frames, covariances, joint states."""
 
 import sys
-from pathlib import Path
 
 import rospy
 import rostest
@@ -10,21 +9,17 @@ from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
-from simulator import SimulatorTest, pose, topics_of, wait_until
+from simulator import SimulatorTest, pose, recorded, topics_of, wait_until
 from tf2_msgs.msg import TFMessage
 
-ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
 WHEEL = '<wheel link_name="{side}_{end}_link"><wheel_normal_force>29</wheel_normal_force></wheel>'
 STEERED = ['steer_joint', 'front_joint', 'left_joint', 'right_joint']
 
 
 class DriveTest(SimulatorTest):
-    def spawn_recorded(self, name, topics):
+    def spawn_drive(self, robot, topics):
         """Spawn a robot; return its odometry and a function that sends commands."""
-        before = topics_of()
-        xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
-        self.assertTrue(self.spawn(name, xml, pose(z=0.02)).success)
-        self.assertEqual(topics_of() - before, topics)
+        self.spawn_recorded(robot, topics, z=0.02)
         return self.collect('/odom', Odometry), self.driver('/cmd_vel')
 
     def edges(self, messages):
@@ -35,7 +30,7 @@ class DriveTest(SimulatorTest):
         }
 
     def test_odometry_of_a_skid_steer_is_planar_with_its_covariances(self):
-        odometry, command = self.spawn_recorded('skid4', {'/cmd_vel', '/odom', '/tf'})
+        odometry, command = self.spawn_drive('skid4', {'/cmd_vel', '/odom', '/tf'})
         transforms = self.collect('/tf', TFMessage)
         command(0.5)
         wait_until(lambda: odometry and odometry[-1].twist.twist.linear.x > 0.45, 'it drives')
@@ -55,7 +50,7 @@ class DriveTest(SimulatorTest):
             for end in ('front', 'rear')
         )
         plugin = f'<gazebo><plugin name="s" filename="libgazebo_ros_wheel_slip.so">{wheels}'
-        xml = (ROBOTS / 'skid4.urdf').read_text(encoding='utf-8')
+        xml = recorded('skid4')
         xml = xml.replace('</robot>', f'{plugin}</plugin></gazebo></robot>')
         self.assertTrue(self.spawn('skid4', xml, pose(z=0.02)).success)
         there = topics_of() - before
@@ -72,14 +67,14 @@ class DriveTest(SimulatorTest):
         self.assertEqual(topics_of(), before)
 
     def test_planar_robot_moves_sideways(self):
-        odometry, command = self.spawn_recorded('planar', {'/cmd_vel', '/odom', '/tf'})
+        odometry, command = self.spawn_drive('planar', {'/cmd_vel', '/odom', '/tf'})
         command(left=0.3)
         wait_until(lambda: odometry and odometry[-1].twist.twist.linear.y > 0.25, 'it moves')
         self.assertLess(abs(odometry[-1].twist.twist.linear.x), 0.05)
 
     def test_tricycle_publishes_all_of_its_joints(self):
         topics = {'/cmd_vel', '/odom', '/tf', '/joint_states'}
-        odometry, command = self.spawn_recorded('tricycle', topics)
+        odometry, command = self.spawn_drive('tricycle', topics)
         states = self.collect('/joint_states', JointState)
         transforms = self.collect('/tf', TFMessage)
         command(0.3, turn=0.2)

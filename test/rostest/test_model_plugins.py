@@ -4,19 +4,17 @@
 import itertools
 import math
 import sys
-from pathlib import Path
 
 import rospy
 import rostest
 from geometry_msgs.msg import TransformStamped, Wrench
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
-from simulator import SimulatorTest, pose, topics_of, wait_until
+from simulator import SimulatorTest, topics_of, wait_until
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'robots'
 WHEELS = [f'{side}_{end}_joint' for end in ('front', 'rear') for side in ('left', 'right')]
 TOLD = {
     '/gt': ('world', 'base_footprint', 20),
@@ -41,12 +39,9 @@ def has_period(messages, period):
 
 
 class ModelPluginsTest(SimulatorTest):
-    def spawn_recorded(self, name, topics, z=0.0):
-        """Spawn a robot and assert that it has these topics."""
+    def setUp(self):
+        super().setUp()
         before = topics_of()
-        xml = (ROBOTS / f'{name}.urdf').read_text(encoding='utf-8')
-        self.assertTrue(self.spawn(name, xml, pose(z=z)).success)
-        self.assertEqual(topics_of() - before, topics)
         self.addCleanup(lambda: self.assertEqual(topics_of(), before))
 
     def test_true_poses_and_joint_states_have_gazebos_frames_and_stamps(self):
@@ -135,14 +130,14 @@ class ModelPluginsTest(SimulatorTest):
         wrench = Wrench()
         wrench.force.x, wrench.force.z = 5.0, 60.0
         push(wrench)
-        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.2, 'motion')
+        wait_until(lambda: self.model_state('bot', '').twist.linear.x > 0.2, 'motion')
         wrench.force.x = float('nan')
         push(wrench)  # dropped with an error
-        wait_until(lambda: self.model_state('force', '').twist.linear.x > 0.4, 'acceleration')
-        twist = self.model_state('force', '').twist.linear
+        wait_until(lambda: self.model_state('bot', '').twist.linear.x > 0.4, 'acceleration')
+        twist = self.model_state('bot', '').twist.linear
         self.assertAlmostEqual(twist.z / twist.x, 2.2, delta=0.01)
         push(Wrench())
-        wait_until(lambda: self.model_state('force', '').twist.linear.z < 0.0, 'it falls')
+        wait_until(lambda: self.model_state('bot', '').twist.linear.z < 0.0, 'it falls')
 
     def test_hand_of_god_follows_a_frame(self):
         self.spawn_recorded('hog', {'/tf', '/tf_static'} - topics_of(), z=0.5)
@@ -153,9 +148,9 @@ class ModelPluginsTest(SimulatorTest):
         edge.transform.translation.x = edge.transform.translation.z = 1.0
         edge.transform.rotation.w = 1.0
         self.assertEqual(self.actual(transforms), [])
-        self.assertAlmostEqual(self.model_state('hog', '').pose.position.z, 0.5)
+        self.assertAlmostEqual(self.model_state('bot', '').pose.position.z, 0.5)
         lead.publish(TFMessage([edge]))
-        wait_until(lambda: self.model_state('hog', '').pose.position.x > 0.999, 'the frame reached')
+        wait_until(lambda: self.model_state('bot', '').pose.position.x > 0.999, 'the frame reached')
         wait_until(lambda: has_period(self.actual(transforms), 1), 'transforms of successive steps')
         received = self.actual(transforms)
         self.assertEqual({edge.header.frame_id for edge in received}, {'world'})

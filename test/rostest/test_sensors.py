@@ -3,7 +3,6 @@
 
 import math
 import sys
-from pathlib import Path
 
 import numpy as np
 import rospy
@@ -11,10 +10,8 @@ import rostest
 from gazebo_msgs.msg import ContactsState
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import Imu, LaserScan, PointCloud, Range
-from simulator import DEADLINE, SimulatorTest, pose, topics_of, wait_until
+from simulator import DEADLINE, SimulatorTest, recorded, topics_of, wait_until
 from std_srvs.srv import Empty
-
-ROBOTS = Path(__file__).resolve().parents[1] / 'data' / 'gazebo' / 'sensors' / 'robots'
 
 
 def spacing(messages):
@@ -24,13 +21,6 @@ def spacing(messages):
 
 
 class SensorTest(SimulatorTest):
-    def spawn_recorded(self, robot, topics, namespace='/'):
-        """Spawn a recorded robot and assert that it has these topics."""
-        before = topics_of()
-        text = (ROBOTS / f'{robot}.urdf').read_text(encoding='utf-8')
-        self.assertTrue(self.spawn('bot', text, pose(z=0.0), namespace=namespace).success)
-        self.assertEqual(topics_of() - before, topics)
-
     def test_laser_has_its_frame_and_rate(self):
         self.spawn_recorded('laser_nonoise', {'/scan'})
         scans = self.read('/scan', LaserScan, 10)
@@ -107,7 +97,7 @@ class SensorTest(SimulatorTest):
         self.assertAlmostEqual(message.states[-1].total_wrench.force.z / 49.0, 1.0, 1)
 
     def test_joint_wrench_is_that_of_the_suspended_mass(self):
-        self.spawn('arm', (ROBOTS.parents[1] / 'robots' / 'arm_ft.urdf').read_text())
+        self.spawn('arm', recorded('arm_ft'))
         messages = self.read('/ft_elbow', WrenchStamped, 5)
         self.assertEqual(messages[-1].header.frame_id, 'fore')
         self.assertEqual(spacing(messages), {10})
