@@ -296,13 +296,13 @@ def _beside(place: Sequence[float], one: Sequence[float], other: Sequence[float]
     return math.hypot(px - x - share * dx, py - y - share * dy)
 
 
-def compare_idle(name: str, tuning: Tuning | None = None) -> list[Difference]:
+def compare_idle(name: str) -> list[Difference]:
     """Return how far a standing robot drifts; in Gazebo it creeps."""
     idle = load(name).get('idle')
     if idle is None:
         return []
     rows = range(0, round(1000 * IDLE) + 1, ROW)
-    samples = drive(robot(name), [], IDLE, tuning, sampled=rows)
+    samples = drive(robot(name), [], IDLE, sampled=rows)
     last, scene = samples[-1], f'{name} idle 20 s'
     way = math.hypot(idle['dx'], idle['dy'])
     most = max(CREEP, way)  # the tricycle coasts: its plugin commands the measured speed

@@ -2,13 +2,10 @@
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
 from itertools import pairwise
 
 from rosbots_description.sim.core.transforms import Twist
 from rosbots_description.sim.formats.sdf.world_file import open_world
-from rosbots_description.sim.physics.bullet.engine import Engine
-from rosbots_description.sim.physics.bullet.tuning import Tuning
 from rosbots_description.sim.resources.search_path import ModelSearch
 from rosbots_description.sim.runtime.model import Joint, Link
 from rosbots_description.sim.runtime.population import populate
@@ -31,13 +28,13 @@ JOINT_SHARE, JOINT_FLOOR = 0.03, 0.005  # [rad or m], and the same per second
 REBOUND_SHARE, BOUNCES = 0.03, 3
 
 
-def compare_scene(name: str, tuning: Tuning | None = None) -> list[Difference]:
+def compare_scene(name: str) -> list[Difference]:
     """Return the differences in all recorded quantities of a passive scene.
 
     Some of them are from mechanics, see support/mechanics.py.
     """
     data = load(name)
-    ours = _run(name, tuning)
+    ours = _run(name)
     found = []
     for link, rows in data.get('links', {}).items():
         found += _compare_link(name, link, rows, ours)
@@ -50,13 +47,13 @@ def compare_scene(name: str, tuning: Tuning | None = None) -> list[Difference]:
     return found
 
 
-def _run(name: str, tuning: Tuning | None) -> dict[tuple[str, int], tuple]:
+def _run(name: str) -> dict[tuple[str, int], tuple]:
     """Return the state of each link and joint at each step of the recording, by both.
 
     Those of `REBOUNDS` at every step.
     """
     data = load(name)
-    world = World(make_engine=partial(Engine, tuning=tuning))
+    world = World()
     try:
         populate(world, open_world(DATA / 'worlds' / f'{name}.world', find_model=ModelSearch()))
         wanted: dict[int, list[str]] = {}
