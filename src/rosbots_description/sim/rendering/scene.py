@@ -51,13 +51,13 @@ class SceneMirror:
         """Update `scene` from the world; return whether it has changed."""
         changes = self._world.revisions.since(self._seen)
         self._seen = changes.revision
-        if changes.looks:
+        if changes.appearance:
             self._lay_out()
         for link, (position, orientation) in changes.moved.items():
             row = self._rows.get(link)
             if row is not None:
                 self._poses[row] = *position, *orientation
-        return changes.looks
+        return changes.appearance
 
     def poses(self) -> NDArray[Any]:
         """Return the poses of the scene's bodies (n, 7): position [m], quaternion x, y, z, w."""

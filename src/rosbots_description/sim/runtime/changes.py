@@ -53,8 +53,8 @@ class Changes(NamedTuple):
     moved: dict[Link, Pose]
 
     @property
-    def looks(self) -> bool:
-        """Whether more than poses differs of what is seen."""
+    def appearance(self) -> bool:
+        """Whether what is seen differs by more than poses."""
         return bool(self.added or self.respecified or self.removed or self.scenery)
 
 

@@ -27,7 +27,7 @@ class ShownWorld:
         is_first = self._changed is NOTHING
         changes = world.revisions.since(self._changed)
         self._changed = changes.revision
-        if not (changes.looks or changes.physics):
+        if not (changes.appearance or changes.physics):
             return None
         if is_first:
             self._links.clear()
