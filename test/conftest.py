@@ -1,11 +1,13 @@
-"""How hypothesis looks for counterexamples, and in which order files are tested.
+"""How hypothesis looks for counterexamples, in which order files are tested, and a fixture of all.
 
 Hypothesis tries the same examples every time. More of them, and others each time, are tried with
 the profile `search`: ./rosbots bench fuzz
 """
 
 import ctypes
+import gc
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -51,3 +53,11 @@ LONGEST = (
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Sort the files that take longest to the front; their order and all others stay."""
     items.sort(key=lambda item: item.path.stem not in LONGEST)
+
+
+@pytest.fixture
+def no_collection() -> Iterator[None]:
+    """Switch the garbage collector off, which would free what is left behind, here or earlier."""
+    gc.disable()
+    yield
+    gc.enable()

@@ -163,7 +163,7 @@ signal.pause()
     Table(file, tmp_path)
 
 
-def test_refused_table_leaves_no_file_open(file, tmp_path):
+def test_refused_table_leaves_no_file_open(file, tmp_path, no_collection):
     first = Table(file, tmp_path)
     before = os.listdir('/proc/self/fd')
     for _ in range(10):

@@ -1,6 +1,5 @@
 """The page as a browser gets it: the scene, the clock, and what its controls do."""
 
-import gc
 import weakref
 from types import SimpleNamespace
 
@@ -34,15 +33,11 @@ def test_the_simulator_is_looked_at_only_while_a_browser_is(site, simulator, pag
     wait_until(lambda: simulator.change is None)
 
 
-def test_what_was_kept_for_browsers_is_freed_when_all_have_gone(site, page):
-    gc.disable()  # else it may come by itself, sooner or later
-    try:
-        with Browser(site.address) as first, Browser(site.address) as second:
-            first.wait_until(lambda: second.read() or len(site.get_clients()) == 2)
-            kept = [weakref.ref(client) for client in site.get_clients().values()]
-        wait_until(lambda: page.poll() or not any(client() for client in kept))
-    finally:
-        gc.enable()
+def test_what_was_kept_for_browsers_is_freed_when_all_have_gone(site, page, no_collection):
+    with Browser(site.address) as first, Browser(site.address) as second:
+        first.wait_until(lambda: second.read() or len(site.get_clients()) == 2)
+        kept = [weakref.ref(client) for client in site.get_clients().values()]
+    wait_until(lambda: page.poll() or not any(client() for client in kept))
 
 
 @pytest.mark.parametrize('is_complete', [True, False])

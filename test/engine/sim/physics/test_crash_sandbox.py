@@ -127,7 +127,7 @@ def passes(spec, does=lambda: None):
 
 
 @pytest.fixture(autouse=True)
-def fixture_nothing_is_left():
+def fixture_nothing_is_left(no_collection):
     before = os.listdir('/proc/self/fd')
     yield
     assert os.listdir('/proc/self/fd') == before

@@ -188,20 +188,16 @@ def test_sum_of_all_rays_is_limited_until_models_are_deleted(scene, caplog):
     assert accepted.sensors
 
 
-def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(scene):
+def test_rays_of_equal_sensors_are_stored_once_and_freed_with_the_last(scene, no_collection):
     models = spawn_lasers(scene, range(4), 100_000)
     fans = [weakref.ref(next(iter(model.sensors.values())).fan) for model in models]
     assert len(set(fans)) == 1
     for model in models:
         next(iter(model.sensors.values())).read()
-    gc.disable()  # no cycle may keep megabytes
-    try:
-        for number in range(4):
-            assert fans[0]() is not None
-            scene.delete(f'bot{number}')
-        assert fans[0]() is None
-    finally:
-        gc.enable()
+    for number in range(4):
+        assert fans[0]() is not None
+        scene.delete(f'bot{number}')
+    assert fans[0]() is None  # no cycle keeps megabytes
 
 
 def test_deleted_models_are_referenced_by_no_ray_scene(scene):

@@ -1,6 +1,5 @@
 """A closed topic leaves no descriptor behind."""
 
-import gc
 import os
 import socket
 
@@ -21,17 +20,8 @@ def open_pollers():
     return found
 
 
-@pytest.fixture
-def collector():
-    """Switch the garbage collector off, which would close what is left behind."""
-    gc.collect()
-    gc.disable()
-    yield
-    gc.enable()
-
-
 @pytest.mark.parametrize('kind', ['_PublisherImpl', '_SubscriberImpl'])
-def test_closed_topics_leave_no_descriptor(monkeypatch, collector, kind):
+def test_closed_topics_leave_no_descriptor(monkeypatch, no_collection, kind):
     monkeypatch.setattr(rospy.topics, 'Poller', rospy.topics.Poller)  # restored after the test
     monkeypatch.setattr(rospy.topics._TopicImpl, 'close', rospy.topics._TopicImpl.close)
     close_pollers()

@@ -56,7 +56,7 @@ def fixture_busy():
 
 
 @pytest.fixture(autouse=True)
-def fixture_nothing_is_left():
+def fixture_nothing_is_left(no_collection):
     before = os.listdir('/proc/self/fd')
     yield
     assert os.listdir('/proc/self/fd') == before
