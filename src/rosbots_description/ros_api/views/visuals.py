@@ -16,6 +16,7 @@ import rospy
 from genpy import Message
 from visualization_msgs.msg import Marker, MarkerArray
 
+from ...sim.core import Pose
 from ...sim.rendering import SunlitMeshes
 from ...sim.runtime import NOTHING, Link, Model, World
 from ..server import Server
@@ -41,9 +42,8 @@ class LinkView:
             if file is not None:
                 use_sunlit(marker, file)
 
-    def placed(self) -> list[Marker]:
+    def placed(self, pose: Pose) -> list[Marker]:
         """Return the markers where the link is now."""
-        pose = self.link.pose
         for marker, visual in zip(self.markers, self.link.spec.visuals, strict=True):
             place_marker(marker, pose, visual)
         return self.markers
@@ -67,7 +67,7 @@ class ShownMarkers:
         is_first = self._seen is NOTHING
         changes = self._world.revisions.since(self._seen)
         self._seen = changes.revision
-        markers = []
+        markers, poses = [], changes.revision.poses
         if is_first:
             markers.append(clearance())
             self._views.clear()
@@ -81,12 +81,12 @@ class ShownMarkers:
         self._updates += 1
         for view in chain.from_iterable(self._views.values()):
             if refresh or view.link in changes.moved:
-                markers += view.placed()
+                markers += view.placed(poses[view.link])
         self._awaited |= {model.name: self._make(model) for model in changes.added}
         for name in [name for name, made in self._awaited.items() if made.done()]:
             self._views[name] = self._awaited.pop(name).result()
             for view in self._views[name]:
-                markers += view.placed()
+                markers += view.placed(poses[view.link])
         return markers
 
     def _make(self, model: Model) -> Future[list[LinkView]]:

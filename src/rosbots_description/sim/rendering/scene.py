@@ -72,8 +72,9 @@ class SceneMirror:
             if link.spec.visuals
         ]
         self._rows = {link: row for row, link in enumerate(links)}
-        poses = [(*position, *orientation) for position, orientation in (one.pose for one in links)]
-        self._poses = np.array(poses, float).reshape(-1, 7)
+        poses = (self._seen.poses[link] for link in links)
+        numbers = [(*position, *orientation) for position, orientation in poses]
+        self._poses = np.array(numbers, float).reshape(-1, 7)
         parts = tuple(
             part
             for link, row in self._rows.items()

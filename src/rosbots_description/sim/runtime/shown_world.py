@@ -66,7 +66,7 @@ class ShownWorld:
             shown = ShownLink(
                 next(self._numbers),
                 link.name,
-                link.pose,
+                self._changed.poses[link],
                 spec.visuals,
                 spec.collisions,
                 spec.inertial,

@@ -11,6 +11,7 @@ from support.fake_engine import FakeEngine
 from rosbots_description.sim.core.transforms import Pose
 from rosbots_description.sim.description import LightSpec
 from rosbots_description.sim.runtime.changes import NOTHING
+from rosbots_description.sim.runtime.shown_world import ShownWorld
 from rosbots_description.sim.runtime.world import World
 
 CRATE = urdf_spec(
@@ -134,3 +135,11 @@ def test_a_world_goes_whose_revisions_are_kept():
     del world
     gc.collect()
     assert [gone() for gone in kept.values()] == [None]
+
+
+def test_what_a_page_is_shown_is_read_once(world):
+    shown = ShownWorld(world)
+    world.engine.reads.clear()
+    assert shown.change()
+    assert shown.motion(0.0).poses == {}
+    assert world.engine.reads == [True, False]  # of the wall and the crate
