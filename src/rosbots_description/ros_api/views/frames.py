@@ -32,8 +32,11 @@ class ShownFrames:
         """Return the frames of the models that moved since the last call."""
         changes = self._world.revisions.since(self._seen)
         self._seen = changes.revision
-        models = [link.model for link in changes.moved if link.spec is link.model.spec.links[0]]
-        return [_transform(model.name, model.pose) for model in models]
+        return [
+            _transform(link.model.name, link.model.frame(pose))
+            for link, pose in changes.moved.items()
+            if link.spec is link.model.spec.links[0]
+        ]
 
 
 def _transform(name: str, pose: Pose) -> TransformStamped:

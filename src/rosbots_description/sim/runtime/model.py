@@ -213,8 +213,11 @@ class Model(_Named):
     @property
     def pose(self) -> Pose:
         """Return the pose of the model's frame in the world."""
-        pose = self.engine.link_pose(self.body, self._canonical)
-        return compose(pose, self._model_in_canonical)
+        return self.frame(self.engine.link_pose(self.body, self._canonical))
+
+    def frame(self, canonical: Pose) -> Pose:
+        """Return the pose of the model's frame where its canonical link has that pose."""
+        return compose(canonical, self._model_in_canonical)
 
     @property
     def twist(self) -> Twist:
@@ -224,7 +227,7 @@ class Model(_Named):
     def state(self) -> tuple[Pose, Twist]:
         """Return the pose of the model's frame and the twist of its canonical link."""
         pose, twist = self.engine.link_state(self.body, self._canonical)
-        return compose(pose, self._model_in_canonical), twist
+        return self.frame(pose), twist
 
     def has_diverged(self) -> bool:
         """Tell whether a pose or velocity of the model is not finite, or beyond all limits."""
