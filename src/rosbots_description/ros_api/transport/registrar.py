@@ -52,9 +52,9 @@ class Registrar:
             job = self._jobs.get()
             try:
                 job()
-            except rospy.ROSInterruptException:  # the node is shutting down
-                return
             except Exception:
+                if rospy.is_shutdown():  # topics are closed, and nothing is to be registered
+                    return
                 logger.exception('a registration with the ROS master failed')
 
 

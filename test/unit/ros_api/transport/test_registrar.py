@@ -3,6 +3,8 @@
 import threading
 
 import pytest
+import rospy
+from support.patience import PATIENCE, wait_until
 
 from rosbots_description.ros_api.transport import registrar
 from rosbots_description.ros_api.transport.master import AddressError
@@ -51,3 +53,26 @@ def test_what_hangs_is_not_awaited_for_ever(slow, monkeypatch, caplog):
     monkeypatch.setattr(registrar, 'is_master_running', lambda _: True)
     slow[0].await_registration('spawn')
     assert 'spawn: the ROS master has not registered all topics' in caplog.text
+
+
+def threads():
+    return [one for one in threading.enumerate() if one.name == 'registrar']
+
+
+@pytest.mark.parametrize('ends', [True, False])
+def test_a_failure_is_an_error_unless_the_node_ends(monkeypatch, caplog, ends):
+    monkeypatch.setattr(registrar.rospy, 'is_shutdown', lambda: ends)
+    before = threads()
+    one, failed = Registrar(), threading.Event()
+
+    def fail():
+        failed.set()
+        raise rospy.ROSException('publish() to a closed topic')
+
+    one.post(fail)
+    assert failed.wait(PATIENCE)
+    if ends:
+        wait_until(lambda: threads() == before)
+    else:
+        assert one.wait(PATIENCE)
+    assert ('registration with the ROS master failed' in caplog.text) is not ends
