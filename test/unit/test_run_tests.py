@@ -74,6 +74,25 @@ def test_a_failure_ends_with_its_command_and_log(monkeypatch, capsys, tmp_path):
     assert summary['seconds'].keys() == {'lint', 'all'}
 
 
+def test_all_phases_run_and_those_that_load_the_machine_one_after_the_other(monkeypatch):
+    begun, ended = [], []
+
+    def phase(name):
+        def run(_word):
+            begun.append((name, tuple(ended)))
+            ended.append(name)
+            return results.Count(passed=1)
+
+        return run
+
+    monkeypatch.setattr(run_tests, 'PHASES', {name: phase(name) for name in run_tests.PHASES})
+    took = {}
+    assert run_tests.run_phases([*run_tests.PHASES], '', took).passed == len(run_tests.PHASES)
+    assert took.keys() == set(ended) == set(run_tests.PHASES)
+    after = dict(begun)
+    assert {'rostest', 'lint'} <= {*after['unit']} & {*after['engine']}
+
+
 def test_success_is_exit_code_0(monkeypatch, capsys):
     assert run_with(monkeypatch, 0) == 0
     assert 'repeat' not in capsys.readouterr().out
