@@ -25,20 +25,22 @@ class ExampleNodeTest(unittest.TestCase):
 
     def setUp(self):
         self.track = []  # (time [s], x, y [m], yaw [rad]) of base_footprint in the world
+        self.is_tracked = True
         self.speed = np.inf  # [m/s] or [rad/s], whichever is more
         rospy.Subscriber('/odom', Odometry, self._record, tcp_nodelay=True)
         wait_until(lambda: self.track, 'the robot', LIMIT)
 
     def _record(self, odometry):
         pose, twist = odometry.pose.pose, odometry.twist.twist
-        self.track.append(
-            (
-                odometry.header.stamp.to_sec(),
-                pose.position.x,
-                pose.position.y,
-                2 * np.arctan2(pose.orientation.z, pose.orientation.w),
+        if self.is_tracked:
+            self.track.append(
+                (
+                    odometry.header.stamp.to_sec(),
+                    pose.position.x,
+                    pose.position.y,
+                    2 * np.arctan2(pose.orientation.z, pose.orientation.w),
+                )
             )
-        )
         self.speed = max(abs(twist.linear.x), abs(twist.angular.z))
 
     def limit_rate(self, rate):
@@ -49,21 +51,29 @@ class ExampleNodeTest(unittest.TestCase):
         )
         self.assertTrue(done.success)
 
-    def drive(self, steps, is_over):
+    def drive(self, steps, is_over, anew=False):
         """Let the node drive, with a command every so many steps, before time goes on.
 
-        Time would not wait for a node that a busy machine lets wait.
+        Time would not wait for a node that a busy machine lets wait: before and after this the
+        robot may go astray, so its track is that in between.
+
+        Args:
+            anew: put the robot back first to where it was spawned.
         """
         commands = []
         subscriber = rospy.Subscriber(COMMANDS, Twist, commands.append)
         wait_until(lambda: commands, 'a command', LIMIT)
         proxy('pause_physics', Empty)()
+        if anew:
+            proxy('reset_world', Empty)()
+        self.track.clear()
         step = proxy('step', Step)
-        while not is_over():
+        while not (self.track and is_over()):
             heard = len(commands)
             self.assertTrue(step(steps).success)
             wait_until(lambda heard=heard: len(commands) > heard, 'a command', LIMIT)
         subscriber.unregister()
+        self.is_tracked = False
         proxy('unpause_physics', Empty)()
 
     def seconds(self):

@@ -37,7 +37,7 @@ class LineFollowerTest(ExampleNodeTest):
     def test_the_robot_follows_the_line_for_a_lap_and_stops_with_the_node(self):
         camera = Client('/camera1', DEADLINE)  # unthrottled, the simulator draws every picture
         camera.update_configuration({'imager_rate': PICTURES})
-        self.drive(PICTURE, lambda: self.laps() >= 1)
+        self.drive(PICTURE, lambda: self.laps() >= 1, anew=True)
         self.kill_and_expect_rest('/line_follower')
         centres, directions, lengths = pieces()
         track = self.axle_track()[:, None, 1:] - centres
