@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Run every test of the project, and end with one line 'N passed, N failed'.
 
-Phases: lint (ruff, mypy, the documentation's site, catkin_lint, launch files), beside it rostest
-(each test/rostest/*.test with its own master, several side by side); then, side by side, unit
-(pytest, no ROS master) and engine (pytest, PyBullet without a window), each with a process for each
-processor. A phase without any test counts as failed. What failed is listed at the end with the
-command that repeats it.
+Phases: first rostest (each test/rostest/*.test with its own master, several side by side); then,
+side by side, lint (ruff, mypy, the documentation's site, catkin_lint, launch files), unit (pytest,
+no ROS master) and engine (pytest, PyBullet without a window), each of the latter two with a process
+for each processor. A phase without any test counts as failed. What failed is listed at the end with
+the command that repeats it.
 """
 
 from __future__ import annotations
@@ -160,8 +160,8 @@ PHASES: dict[str, Callable[[str], Count]] = {
     'engine': pytest_phase('engine'),
     'rostest': lambda word: run_rostests(choose(word)),
 }
-# All at once compete for the processors' caches, and cost a seventh more of their time.
-SIDE_BY_SIDE = (('lint', 'rostest'), ('unit', 'engine'))
+# All at once compete for the processors' caches: unit and engine then take a seventh more of them.
+SIDE_BY_SIDE = (('rostest',), ('lint', 'unit', 'engine'))
 
 
 def run_tests(names: list[str]) -> Count:
@@ -186,7 +186,7 @@ def run_changed(took: dict[str, float]) -> Count:
 
 
 def run_phases(phases: list[str], word: str, took: dict[str, float]) -> Count:
-    """Run phases, two side by side, since both wait at times; note the wall time of each [s]."""
+    """Run phases, some side by side, since they wait at times; note the wall time of each [s]."""
 
     def run(phase: str) -> Count:
         start = time.monotonic()
