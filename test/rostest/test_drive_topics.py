@@ -13,6 +13,7 @@ from simulator import SimulatorTest, pose, recorded, topics_of, wait_until
 from tf2_msgs.msg import TFMessage
 
 WHEEL = '<wheel link_name="{side}_{end}_link"><wheel_normal_force>29</wheel_normal_force></wheel>'
+SETTLING = rospy.Duration(1.0)  # a skid steer turns faster for 0.3 s when it begins to turn
 STEERED = ['steer_joint', 'front_joint', 'left_joint', 'right_joint']
 
 
@@ -57,7 +58,9 @@ class DriveTest(SimulatorTest):
         self.assertIn('/skid4/wheel_slip/parameter_updates', there)
         odometry = self.collect('/odom', Odometry)
         self.driver('/cmd_vel')(turn=1.0)
-        wait_until(lambda: odometry and odometry[-1].twist.twist.angular.z > 0.6, 'it turns')
+        wait_until(lambda: odometry and odometry[-1].twist.twist.angular.z > 0.5, 'it turns')
+        settled = odometry[-1].header.stamp + SETTLING
+        wait_until(lambda: odometry[-1].header.stamp > settled, 'the turn to settle')
         self.assertLess(odometry[-1].twist.twist.angular.z, 0.8)
         change = rospy.ServiceProxy('/skid4/wheel_slip/set_parameters', Reconfigure)
         name = 'slip_compliance_unitless_lateral'
