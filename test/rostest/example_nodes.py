@@ -10,7 +10,7 @@ from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from rosbots_msgs.srv import Step
-from simulator import COMMANDS, proxy, wait_until
+from simulator import COMMANDS, hears, proxy, sends, wait_until
 from std_srvs.srv import Empty
 
 WORLDS = Path(__file__).resolve().parents[2] / 'src' / 'rosbots_description' / 'worlds'
@@ -27,8 +27,8 @@ class ExampleNodeTest(unittest.TestCase):
         self.track = []  # (time [s], x, y [m], yaw [rad]) of base_footprint in the world
         self.is_tracked = True
         self.speed = np.inf  # [m/s] or [rad/s], whichever is more
-        rospy.Subscriber('/odom', Odometry, self._record, tcp_nodelay=True)
-        wait_until(lambda: self.track, 'the robot', LIMIT)
+        odometry = rospy.Subscriber('/odom', Odometry, self._record, tcp_nodelay=True)
+        wait_until(lambda: hears(odometry), 'the robot', LIMIT)
 
     def _record(self, odometry):
         pose, twist = odometry.pose.pose, odometry.twist.twist
@@ -51,22 +51,23 @@ class ExampleNodeTest(unittest.TestCase):
         )
         self.assertTrue(done.success)
 
-    def drive(self, steps, is_over, anew=False):
-        """Let the node drive, with a command every so many steps, before time goes on.
+    def drive(self, node, topic, steps, is_over):
+        """Let a node drive that answers each message of a topic, every so many steps, by a command.
 
-        Time would not wait for a node that a busy machine lets wait: before and after this the
-        robot may go astray, so its track is that in between.
-
-        Args:
-            anew: put the robot back first to where it was spawned.
+        Physics is paused from the start, and time waits for each answer: a late node would not
+        steer in time on a busy machine.
         """
         commands = []
         subscriber = rospy.Subscriber(COMMANDS, Twist, commands.append)
-        wait_until(lambda: commands, 'a command', LIMIT)
-        proxy('pause_physics', Empty)()
-        if anew:
-            proxy('reset_world', Empty)()
-        self.track.clear()
+        wait_until(
+            lambda: (
+                sends('/gazebo', topic, node)
+                and sends(node, COMMANDS, '/gazebo')
+                and hears(subscriber, node)
+            ),
+            f'{node} to be connected',
+            LIMIT,
+        )
         step = proxy('step', Step)
         while not (self.track and is_over()):
             heard = len(commands)

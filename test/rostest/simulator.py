@@ -72,14 +72,18 @@ def hears(subscriber, node='/gazebo'):
 
     The subscriber's own number of connections tells only that the node has answered it.
     """
+    return sends(node, subscriber.resolved_name, rospy.get_name())
+
+
+def sends(node, topic, receiver):
+    """Tell whether a node sends a topic to another node: what it publishes from now on arrives."""
     try:
         address = rosnode.get_api_uri(rosgraph.Master('/test'), node, skip_cache=True)
         connections = ServerProxy(address).getBusInfo('/test')[2]
     except (OSError, rosgraph.MasterError, TypeError):  # it has not started yet
         return False
     return any(
-        (other, way, topic) == (rospy.get_name(), 'o', subscriber.resolved_name)
-        for _, other, way, _, topic, *_ in connections
+        (other, way, what) == (receiver, 'o', topic) for _, other, way, _, what, *_ in connections
     )
 
 

@@ -11,6 +11,7 @@ from dynamic_reconfigure.client import Client
 from example_nodes import WORLDS, ExampleNodeTest
 from simulator import DEADLINE
 
+FOLLOWER = '/line_follower'
 INSIDE = 0.0, 1.2  # a point that the line goes round [m]
 PICTURES = 10.0  # [Hz]
 PICTURE = 100  # steps
@@ -37,8 +38,8 @@ class LineFollowerTest(ExampleNodeTest):
     def test_the_robot_follows_the_line_for_a_lap_and_stops_with_the_node(self):
         camera = Client('/camera1', DEADLINE)  # unthrottled, the simulator draws every picture
         camera.update_configuration({'imager_rate': PICTURES})
-        self.drive(PICTURE, lambda: self.laps() >= 1, anew=True)
-        self.kill_and_expect_rest('/line_follower')
+        self.drive(FOLLOWER, '/camera1/image_raw', PICTURE, lambda: self.laps() >= 1)
+        self.kill_and_expect_rest(FOLLOWER)
         centres, directions, lengths = pieces()
         track = self.axle_track()[:, None, 1:] - centres
         along = np.clip(np.sum(track * directions, axis=2), -lengths / 2, lengths / 2)

@@ -11,6 +11,7 @@ from example_nodes import WORLDS, ExampleNodeTest
 from nav_msgs.msg import OccupancyGrid
 from simulator import wait_until
 
+WANDERER = '/wander'
 DURATION = 60.0  # [s]
 SCAN = 100  # steps from one scan to the next
 # The robot seen from above, in base_footprint [m]: its decks, and the left wheel beside them
@@ -51,8 +52,8 @@ class MapWhileDrivingTest(ExampleNodeTest):
     def test_the_robot_wanders_without_touching_and_the_map_is_right(self):
         maps = []
         rospy.Subscriber('/map', OccupancyGrid, maps.append)
-        self.drive(SCAN, lambda: self.seconds() >= DURATION)
-        self.kill_and_expect_rest('/wander')
+        self.drive(WANDERER, '/scan', SCAN, lambda: self.seconds() >= DURATION)
+        self.kill_and_expect_rest(WANDERER)
         latest = maps[-1]
         self.check_track()
         self.check_map(latest)
