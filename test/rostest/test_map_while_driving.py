@@ -9,11 +9,11 @@ import rospy
 import rostest
 from example_nodes import WORLDS, ExampleNodeTest
 from nav_msgs.msg import OccupancyGrid
-from simulator import wait_until
+from simulator import sends, wait_until
 
-WANDERER = '/wander'
+MAPPER, WANDERER, SCAN = '/map_while_driving', '/wander', '/scan'
 DURATION = 60.0  # [s]
-SCAN = 100  # steps from one scan to the next
+PERIOD = 100  # steps from one scan to the next
 # The robot seen from above, in base_footprint [m]: its decks, and the left wheel beside them
 OUTLINE = (-0.52, 0.58, -0.4, 0.6), (-0.08, 0.38, 0.4, 0.6125)
 OCCUPIED, FREE = 65, 25  # [%] as map_server reads a map: above and below
@@ -52,7 +52,8 @@ class MapWhileDrivingTest(ExampleNodeTest):
     def test_the_robot_wanders_without_touching_and_the_map_is_right(self):
         maps = []
         rospy.Subscriber('/map', OccupancyGrid, maps.append)
-        self.drive(WANDERER, '/scan', SCAN, lambda: self.seconds() >= DURATION)
+        wait_until(lambda: sends('/gazebo', SCAN, MAPPER), 'the node that draws the map')
+        self.drive(WANDERER, SCAN, PERIOD, lambda: self.seconds() >= DURATION)
         self.kill_and_expect_rest(WANDERER)
         latest = maps[-1]
         self.check_track()
