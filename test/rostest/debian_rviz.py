@@ -1,8 +1,9 @@
 """Start of Debian's RViz 1.14 in tests, without our programs.
 
 With software rendering it occasionally corrupts its heap while it opens its window, also
-without any of our programs. It is restarted if it crashes before its window is open; a later end
-by the same heap, CRASH in what a terminal showed, is no fault of ours either.
+without any of our programs (cli/display.py says why). It is restarted if it crashes before its
+window is open; a later end by the same heap, CRASH in what a terminal showed, is no fault of ours
+either.
 """
 
 import re
@@ -13,7 +14,7 @@ from rosnode import rosnode_ping
 from simulator import wait_until
 
 STARTS = 4  # at most
-CRASH = re.compile(r'rviz-\d+\] (process )?has died.*?exit code -(6|11),', re.S)
+CRASH = re.compile(r'rviz-\d+\] (process )?has died.*?exit code (-6|-11|134|139),', re.S)
 READY_SERVICE = '/rviz/reload_shaders'  # the first service after its window
 CONFIG = Path(__file__).resolve().parents[2] / 'config' / 'rosbots.rviz'
 SAVED = '.rviz/default.rviz'  # in a home folder: what RViz opens without an argument

@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import signal
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -15,6 +16,8 @@ from roslaunch.core import RLException
 from roslaunch.xmlloader import XmlLoader
 from support import ROOT
 from support.programs import ran
+
+from rosbots_description.cli.display import STARTS
 
 NAVIGATION = ROOT / 'companions' / 'rosbots_navigation' / 'launch'
 FILES = sorted([*ROOT.glob('launch/*.launch'), *ROOT.glob('companions/*/launch/*.launch')])
@@ -140,6 +143,19 @@ def test_without_a_display_a_sentence_takes_the_place_of_a_window():
     assert done.stderr == (
         'echo: no window: there is no display to open it on (DISPLAY is :987654)\n'
     )
+
+
+def test_with_a_display_a_window_that_crashes_as_it_opens_is_restarted():
+    script = str(ROOT / 'launch' / 'with_display')
+    with_a_display = (
+        'import runpy, sys; from rosbots_simulator.cli import display; '
+        'display.display_works = lambda: True; '
+        "sys.argv[1:] = ['sh', '-c', 'echo started; kill -SEGV $$']; "
+        f"runpy.run_path({script!r}, run_name='__main__')"
+    )
+    done = ran(sys.executable, '-c', with_a_display)
+    assert (done.returncode, done.stdout) == (128 + signal.SIGSEGV, 'started\n' * STARTS)
+    assert done.stderr.startswith('sh: crashed as it opened (SIGSEGV); restarting it\n')
 
 
 def test_rviz_and_sliders_are_optional(load):

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
 
-from .gzclient import display_works
+from .display import display_works
 
 _POLL = 0.1  # [s] between polls of the child processes
 _GRACE = 5.0  # [s] for a child to end after a signal

@@ -2,32 +2,21 @@
 
 import argparse
 import contextlib
-import ctypes
-import ctypes.util
 import os
 import shutil
-import signal
 import stat
-import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+from .display import display_works, no_window, run_window
 from .gzserver import split_remappings
 from .program import fail, say
 
-# The window shows poses from the simulator, independent of /tf.
-_PR_SET_PDEATHSIG = 1  # of prctl(2)
-PERIOD = 1.0  # time between polls of the simulator [s]
-# Debian's RViz 1.14 sometimes corrupts its heap while it opens its window: without a graphics card
-# in one of 28 starts. Later crashes have other causes and would recur, so they are not retried.
-STARTS = 4  # at most
-OPENS = 30.0  # time within which a crash counts as one of the start [s]
-CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGBUS}
 _say = partial(say, 'gzclient')
+# The window shows poses from the simulator, independent of /tf.
 OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
 
 
@@ -46,28 +35,6 @@ def parser() -> argparse.ArgumentParser:
         help='accepted; there is nothing to plug into',
     )
     return made
-
-
-def display_works() -> bool:
-    """Tell whether an X server can be reached; without one RViz would abort."""
-    if not os.environ.get('DISPLAY'):
-        return False
-    library = ctypes.util.find_library('X11')
-    if library is None:
-        return False
-    x11 = ctypes.CDLL(library)
-    x11.XOpenDisplay.restype = ctypes.c_void_p
-    display = x11.XOpenDisplay(None)
-    if not display:
-        return False
-    x11.XCloseDisplay(ctypes.c_void_p(display))
-    return True
-
-
-def no_window() -> str:
-    """Return the sentence for those who have no display."""
-    display = os.environ.get('DISPLAY') or 'not set'
-    return f'no window: there is no display to open it on (DISPLAY is {display})'
 
 
 def config_file() -> Path:
@@ -92,7 +59,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return fail('gzclient', 'no window: rviz is not installed; on Debian: apt install rviz')
     command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_unique_name(remappings)]
     environment = rviz_environment(os.environ, config.with_name('gzclient_log.config'))
-    return _run_window(command, environment)
+    from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
+
+    return run_window(
+        command, environment, lambda text: _say(f'RViz {text}'), ServerWatch(_reporter()).poll
+    )
 
 
 def rviz_environment(given: Mapping[str, str], log_levels: Path) -> dict[str, str]:
@@ -126,47 +97,6 @@ def _unique_name(remappings: Sequence[str]) -> list[str]:
             _say(f'a window has the name {name} already; this one is {other}')
             return [f'__name:={other.rpartition("/")[2]}']
     return []
-
-
-def _end_with_parent() -> None:
-    """Let the kernel signal this process when its parent is killed."""
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
-
-
-def _run_window(command: Sequence[str], environment: Mapping[str, str]) -> int:
-    """Run the window until it is closed, and report when the simulator has ended."""
-    from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
-
-    received: list[int | None] = []
-    window: subprocess.Popen[bytes] | None = None
-
-    def end(number: int | None = None, _frame: object = None) -> None:
-        received.append(number)
-        if window is not None:
-            window.send_signal(signal.SIGINT)  # RViz then unregisters from the master
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, end)
-    watch = ServerWatch(_reporter())
-    for left in reversed(range(STARTS)):
-        started = time.monotonic()
-        window = subprocess.Popen(command, env=environment, preexec_fn=_end_with_parent)  # noqa: PLW1509  it only calls the kernel
-        if received:  # a signal arrived during the start
-            end()
-        while window.poll() is None and not received:  # no reports while shutting down
-            watch.poll()
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                window.wait(PERIOD)
-        code = window.wait()
-        if received:
-            return 0
-        if code not in CRASHES or time.monotonic() - started > OPENS:
-            break
-        _say(
-            f'RViz crashed as it opened ({signal.Signals(-code).name}); '
-            + ('restarting it' if left else f'no window after {STARTS} starts')
-        )
-    return code if code >= 0 else 128 - code  # 128 + signal, as in shells
 
 
 def _reporter() -> Callable[[bool], None]:
