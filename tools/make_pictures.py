@@ -100,6 +100,7 @@ def display(folder: Path) -> Iterator[tuple[str, Path]]:
     server = subprocess.Popen(
         [
             'Xvfb',
+            '-noreset',
             '-displayfd',
             str(write),
             '-nocursor',

@@ -78,9 +78,9 @@ def open_display():
     if 'DISPLAY' in os.environ:
         return lambda: None
     read, write = os.pipe()
-    display = Terminal(
-        'Xvfb', '-displayfd', str(write), '-screen', '0', '1400x900x24', pass_fds=(write,)
-    )
+    # Without -noreset it refuses connections for a moment whenever the last window is closed.
+    options = ('-noreset', '-displayfd', str(write), '-screen', '0', '1400x900x24')
+    display = Terminal('Xvfb', *options, pass_fds=(write,))
     os.close(write)
     with os.fdopen(read) as numbers:
         os.environ['DISPLAY'] = f':{numbers.readline().strip()}'
