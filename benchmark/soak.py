@@ -316,7 +316,7 @@ def held(process: int, folder: Path) -> Held:
     family = [process, *descendants(process)]
     memory, descriptors, threads = 0.0, 0, 0
     for one in family:
-        with contextlib.suppress(FileNotFoundError):  # ended meanwhile
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # ended meanwhile
             pages = Path(f'/proc/{one}/statm').read_text(encoding='ascii').split()[1]
             memory += int(pages) * os.sysconf('SC_PAGE_SIZE') / 1e6
             descriptors += len(os.listdir(f'/proc/{one}/fd'))

@@ -17,6 +17,6 @@ def listening(processes):
                 address, _, port = local.partition(':')
                 places[f'socket:[{inode}]'] = address, int(port, 16)
     for process in processes:
-        with contextlib.suppress(FileNotFoundError):  # it ends meanwhile
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # it ends meanwhile
             sockets |= {os.readlink(file) for file in Path(f'/proc/{process}/fd').iterdir()}
     return {place for inode, place in places.items() if inode in sockets}

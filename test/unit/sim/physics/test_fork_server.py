@@ -40,7 +40,10 @@ def outcome(work, payload=b'', allowance=ALLOWANCE):
 
 
 def exists(process):
-    with contextlib.suppress(FileNotFoundError), open(f'/proc/{process}/stat', 'rb') as file:
+    with (
+        contextlib.suppress(FileNotFoundError, ProcessLookupError),
+        open(f'/proc/{process}/stat', 'rb') as file,
+    ):
         return file.read().rpartition(b') ')[2][:1] != b'Z'
     return False
 
