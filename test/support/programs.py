@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 from . import ROOT
 from .patience import PATIENCE
@@ -46,3 +47,12 @@ def bash(script, *arguments, **environment):
 def in_setup(script, **environment):
     """Run a script with the functions of the set-up."""
     return bash(f'source "$ROOT/tools/setup.bash"; {script}', **environment)
+
+
+def is_running(process):
+    """Return whether a process runs; a zombie, which nobody has reaped yet, does not."""
+    try:
+        state = Path(f'/proc/{process}/stat').read_text().rpartition(')')[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):  # the second if it ends while it is read
+        return False
+    return state != 'Z'

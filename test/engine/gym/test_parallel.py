@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 from support.patience import wait_until
+from support.programs import is_running
 
 import rosbots_description.gym  # noqa: F401  registers the tasks
 from rosbots_description.gym import ParallelEnv, SimEnv, make_parallel
@@ -46,15 +47,6 @@ def actions(envs, count):
     """Return the same random actions every time."""
     random = np.random.default_rng(3)
     return [random.uniform(-1.0, 1.0, envs.action_space.shape) for _ in range(count)]
-
-
-def is_running(pid):
-    """Tell whether a process is there, and not a zombie."""
-    try:
-        with open(f'/proc/{pid}/stat', encoding='ascii') as file:
-            return file.read().rpartition(')')[2].split()[0] != 'Z'
-    except (FileNotFoundError, ProcessLookupError):
-        return False
 
 
 def test_make_vec_gives_the_bits_of_single_environments_in_processes():

@@ -10,6 +10,7 @@ import pytest
 import yaml
 from support import ROOT
 from support.patience import PATIENCE, wait_until
+from support.programs import is_running
 
 from rosbots_description.cli.gzclient import config_file, rviz_environment
 
@@ -38,14 +39,6 @@ def open_window(folder, text):
         stderr=subprocess.PIPE,
         text=True,
     )
-
-
-def is_running(process):
-    """Tell whether a process runs; a zombie, which nobody has reaped yet, does not."""
-    try:
-        return ' Z ' not in Path('/proc', process, 'stat').read_text()
-    except (FileNotFoundError, ProcessLookupError):
-        return False
 
 
 @pytest.fixture

@@ -17,6 +17,7 @@ from functools import partial
 import pytest
 from support import burn
 from support.patience import wait_until
+from support.programs import is_running
 
 from rosbots_description.sim.physics import fork_server
 from rosbots_description.sim.physics.fork_server import MAX_REPORT, Cancelled, ForkServer, Killed
@@ -37,15 +38,6 @@ def outcome(work, payload=b'', allowance=ALLOWANCE):
             return server.run(payload, allowance)
         except Killed as killed:
             return killed.exit_code
-
-
-def exists(process):
-    with (
-        contextlib.suppress(FileNotFoundError, ProcessLookupError),
-        open(f'/proc/{process}/stat', 'rb') as file,
-    ):
-        return file.read().rpartition(b') ')[2][:1] != b'Z'
-    return False
 
 
 @pytest.fixture(name='busy')
@@ -168,7 +160,7 @@ def test_child_without_a_waiting_caller_is_killed(tmp_path, monkeypatch):
     with server_of(work) as server:
         with pytest.raises(Cancelled):
             server.run(b'', ALLOWANCE, lambda: not (note.exists() and note.read_text()))
-        wait_until(lambda: not exists(int(note.read_text())))
+        wait_until(lambda: not is_running(int(note.read_text())))
         assert server._server.channel.fileno() > 0  # the server continues
 
 
@@ -197,10 +189,10 @@ def test_processes_end_with_their_parent(tmp_path, does, victim):
     try:
         wait_until(lambda: note.exists() and note.read_text().endswith('\n'))
         server, child = map(int, note.read_text().split())
-        assert exists(server)
-        assert exists(child)
+        assert is_running(server)
+        assert is_running(child)
         os.kill(parent.pid if victim == 'parent' else server, signal.SIGKILL)
-        wait_until(lambda: not exists(server) and not exists(child))
+        wait_until(lambda: not is_running(server) and not is_running(child))
     finally:
         parent.kill()
         parent.wait()
