@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """Other robots drive on beside irregular models, plugins, topics and commands.
 
 Descriptions, names and numbers that are rejected are in test_hostile.py.
 """
 
 import math
-import sys
 
 import rospy
-import rostest
 from gazebo_msgs.srv import GetLinkState, GetModelProperties
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -98,8 +95,3 @@ class BadInputTest(SimulatorTest):
         self.assertTrue(all(m.twist.twist.linear.x > 0.2 for m in odometry))
         self._drive(0.0)
         wait_until(lambda: abs(odometry[-1].twist.twist.linear.x) < 0.01, 'a stop')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_bad_input', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'bad_input', BadInputTest, sys.argv)

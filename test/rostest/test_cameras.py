@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """Topics of cameras: names, types, frames, stamps, latching, and settings by clients."""
 
 import io
 import re
-import sys
 
 import numpy as np
 import rospy
-import rostest
 from dynamic_reconfigure.client import Client
 from PIL import Image as PilImage
 from rosbots_msgs.srv import Step
@@ -198,8 +195,3 @@ class CameraTest(SimulatorTest):
             self.assertTrue(self.delete('bot').success)
             self.assertNotIn('/camera1/image_raw', topics_of())
             self.disconnect()
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_cameras', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'cameras', CameraTest, sys.argv)

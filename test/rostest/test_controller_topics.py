@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Topics, actions and gains of controllers on the wire: names and types as recorded, and motion."""
 
 import re
@@ -7,7 +6,6 @@ from pathlib import Path
 
 import actionlib
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from control_msgs.msg import (
     FollowJointTrajectoryAction,
@@ -369,8 +367,3 @@ def as_dict(state):
             for claim in state.claimed_resources
         ],
     }
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_controller_topics', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'controller_topics', ControllerTopicsTest, sys.argv)

@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """Controller managers on the wire: launch files, programs, bad input, and nothing left behind."""
 
 import math
 import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import rospy
-import rostest
 from control_msgs.msg import JointControllerState
 from controller_manager_msgs.srv import ListControllerTypes, ReloadControllerLibraries
 from controllers import (
@@ -312,8 +309,3 @@ def said_by(process):
     said = process.communicate(timeout=DEADLINE)[0]
     assert process.returncode == 0, said
     return said
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_controllers', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'controllers', ManagersTest, sys.argv)

@@ -1,13 +1,9 @@
-#!/usr/bin/env python3
 """A model that crashes the engine is rejected with a message; other clients are not affected."""
 
 import signal
-import sys
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 
-import rospy
-import rostest
 from crashing_server import HANGING
 from gazebo_msgs.srv import SpawnModel, SpawnModelRequest
 from raw_client import request_bytes, service_connection, vanish
@@ -87,8 +83,3 @@ class CrashSandboxTest(OwnServerTest):
         self.drive_neighbour()
         self.assertFalse(self.spawn('rough', ROUGH, pose(x=5.0)).success)
         self.assert_neighbour_drives()
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_crash_sandbox', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'crash_sandbox', CrashSandboxTest, sys.argv)

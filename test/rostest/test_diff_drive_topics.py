@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """Topics of the article's robot: frames, names, covariances, signs, stamps."""
 
 import itertools
 import math
-import sys
 
 import rospy
-import rostest
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from simulator import COMMANDS, SimulatorTest, pose, topics_of, wait_until
@@ -152,8 +149,3 @@ class DiffDriveTest(SimulatorTest):
     def _moves(message):
         twist = message.twist.twist
         return abs(twist.linear.x) + abs(twist.angular.z) > 0.05
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_diff_drive', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'diff_drive', DiffDriveTest, sys.argv)

@@ -1,10 +1,6 @@
-#!/usr/bin/env python3
 """Topics of skid steer, planar and tricycle drives: frames, covariances, joint states."""
 
-import sys
-
 import rospy
-import rostest
 from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
 from nav_msgs.msg import Odometry
@@ -89,8 +85,3 @@ class DriveTest(SimulatorTest):
         wait_until(lambda: len(self.edges(transforms)) >= 5, 'five edges')
         children = {child for _, child in self.edges(transforms)}
         self.assertEqual(children, {'base_footprint', *STEERED})
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_drives', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'drives', DriveTest, sys.argv)

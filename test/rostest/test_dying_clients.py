@@ -1,16 +1,13 @@
-#!/usr/bin/env python3
 """Clients that crash, stop reading, send invalid data or call all at once do not affect others."""
 
 import os
 import signal
 import struct
 import subprocess
-import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
 import rospy
-import rostest
 from gazebo_msgs.msg import LinkStates, ModelStates
 from gazebo_msgs.srv import (
     GetModelState,
@@ -191,8 +188,3 @@ class DyingClientsTest(OwnServerTest):
             answers = list(pool.map(ask, range(SIMULTANEOUS), timeout=6 * DEADLINE))
         self.assertEqual(answers, [True] * SIMULTANEOUS)
         self._assert_server_is_unaffected()
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_dying_clients', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'dying_clients', DyingClientsTest, sys.argv)

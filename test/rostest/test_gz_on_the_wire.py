@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """The command gz, as people type it, acts on the running simulator."""
 
 import os
 import re
 import subprocess
-import sys
 import tempfile
 from functools import partial
 
-import rospy
-import rostest
 from gazebo_msgs.srv import GetPhysicsProperties
 from programs import ran
 from rosbots_msgs.srv import SaveWorld
@@ -100,8 +96,3 @@ class GzTest(SimulatorTest):
             with open(f'{folder}/crate.pgm', 'rb') as file:
                 free, full = bytes([254] * 4), bytes([254, 0, 0, 254])
                 self.assertEqual(file.read(), b'P5\n4 4\n255\n' + free + full + full + free)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_gz', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'gz', GzTest, sys.argv)

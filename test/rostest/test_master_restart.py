@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The simulator survives the end of the ROS master, and registers with the next one."""
 
 import subprocess
@@ -8,7 +7,6 @@ from pathlib import Path
 
 import rosgraph
 import rospy
-import rostest
 from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure, ReconfigureRequest
 from gazebo_msgs.srv import (
@@ -183,8 +181,3 @@ class MasterRestartTest(unittest.TestCase):
         code, printed = self.server.end()
         self.assertEqual(code, 0, printed)
         self.assertNotIn('Traceback', printed)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_master_restart', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'master_restart', MasterRestartTest, sys.argv)

@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """Topics of p3d, joint states, trajectories, force and hand of god, as recorded in Gazebo."""
 
 import itertools
 import math
-import sys
 
 import rospy
-import rostest
 from geometry_msgs.msg import TransformStamped, Wrench
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
@@ -164,8 +161,3 @@ class ModelPluginsTest(SimulatorTest):
             for edge in message.transforms
             if edge.child_frame_id == 'hog_actual'
         ]
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_model_plugins', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'model_plugins', ModelPluginsTest, sys.argv)

@@ -1,11 +1,8 @@
-#!/usr/bin/env python3
 """Every service and topic by name, type and MD5 sum; the ones that differ by parameter."""
 
-import sys
 from threading import Thread
 
 import rospy
-import rostest
 from gazebo_msgs.msg import PerformanceMetrics
 from network import (
     OF_ROSOUT,
@@ -127,8 +124,3 @@ class NetworkTest(SimulatorTest):
             ends.append(self.model_state('rosbots', '').pose)
         self.assertEqual(*ends)
         self.assertLess(ends[0].position.z, 0.0)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_network', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'network', NetworkTest, sys.argv)

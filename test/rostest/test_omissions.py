@@ -1,10 +1,6 @@
-#!/usr/bin/env python3
 """Clients are informed of omissions of a spawned model; Gazebo's response is unchanged."""
 
-import sys
-
 import rospy
-import rostest
 from rosbots_msgs.srv import GetModelOmissions
 from simulator import SENSOR_BOX, SimulatorTest, proxy, spawn_model
 
@@ -34,8 +30,3 @@ class OmissionsTest(SimulatorTest):
         response = self._omissions('nobody')
         self.assertFalse(response.success)
         self.assertEqual(response.status_message, 'GetModelOmissions: model does not exist')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_omissions', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'omissions', OmissionsTest, sys.argv)

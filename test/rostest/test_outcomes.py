@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """Every outcome and text of the services as in gazebo_ros, and the effects of successful calls."""
 
 import math
-import sys
 
 import rospy
 import rosservice
-import rostest
 from gazebo_msgs.msg import LinkState, ModelState, ODEJointProperties
 from genpy.message import fill_message_args
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
@@ -409,8 +406,3 @@ class OutcomesTest(SimulatorTest):
         position = self.model_state('slab', '').pose.position
         self.assertAlmostEqual(position.x, 0.0, places=6)
         self.assertAlmostEqual(position.y, 3.0, places=6)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_outcomes', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'outcomes', OutcomesTest, sys.argv)

@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """Step size, update rate, gravity and solver: by service and by dynamic_reconfigure."""
 
 import math
-import sys
 import time
 
 import rospy
-import rostest
 from dynamic_reconfigure.client import Client
 from dynamic_reconfigure.msg import Config, ConfigDescription
 from gazebo_msgs.msg import ODEPhysics
@@ -174,8 +171,3 @@ class PhysicsSettingsTest(SimulatorTest):
             )
 
         wait_until(shown, f'{expected} as parameters and in the updates')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_physics_settings', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'physics', PhysicsSettingsTest, sys.argv)

@@ -1,11 +1,7 @@
-#!/usr/bin/env python3
 """Wrenches and efforts applied by services give the accelerations of rigid-body mechanics."""
 
 import math
-import sys
 
-import rospy
-import rostest
 from gazebo_msgs.msg import ODEJointProperties
 from gazebo_msgs.srv import (
     ApplyBodyWrench,
@@ -169,8 +165,3 @@ class PushesTest(SimulatorTest):
         self.clear_forces('hinge')
         self.step(SECOND)
         self.assertAlmostEqual(self.joint('hinge').rate[0], rate - 0.4, delta=0.004)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_pushes', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'pushes', PushesTest, sys.argv)

@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """Topics of sensors: names, types, frames, stamps; resets, and deletion while subscribed."""
 
 import math
-import sys
 
 import numpy as np
 import rospy
-import rostest
 from gazebo_msgs.msg import ContactsState
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import Imu, LaserScan, PointCloud, Range
@@ -101,8 +98,3 @@ class SensorTest(SimulatorTest):
         messages = self.read('/ft_elbow', WrenchStamped, 5)
         self.assertEqual(messages[-1].header.frame_id, 'fore')
         self.assertEqual(spacing(messages), {10})
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_sensors', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'sensors', SensorTest, sys.argv)

@@ -1,11 +1,7 @@
-#!/usr/bin/env python3
 """Services in a running world, as gazebo_ros 2.9.2 has them; test_outcomes.py has the texts."""
 
 import math
-import sys
 
-import rospy
-import rostest
 from geometry_msgs.msg import Point, Pose, Quaternion
 from simulator import BOX, GROUND, SimulatorTest, pose, topics_of, wait_until
 
@@ -79,8 +75,3 @@ class ServicesTest(SimulatorTest):
         for _ in range(2):
             self.unpause()
         wait_until(lambda: self.world().sim_time > stopped, 'advance of time')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_services', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'services', ServicesTest, sys.argv)

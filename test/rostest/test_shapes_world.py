@@ -1,11 +1,8 @@
-#!/usr/bin/env python3
 """The world of shapes, as `empty_world.launch world_name:=worlds/shapes.world` starts it."""
 
-import sys
 import unittest
 
 import rospy
-import rostest
 from gazebo_msgs.msg import LinkStates, ModelStates
 from gazebo_msgs.srv import GetLightProperties, GetModelProperties, GetWorldProperties
 from simulator import DEADLINE, proxy
@@ -45,8 +42,3 @@ class ShapesWorldTest(unittest.TestCase):
         sun = proxy('get_light_properties', GetLightProperties)('sun')
         self.assertTrue(sun.success)
         self.assertAlmostEqual(sun.diffuse.r, 0.8, places=6)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_shapes_world', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'shapes_world', ShapesWorldTest, sys.argv)

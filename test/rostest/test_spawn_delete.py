@@ -1,11 +1,7 @@
-#!/usr/bin/env python3
 """Delete and spawn again, often, and half of the time while driving."""
 
-import sys
 from pathlib import Path
 
-import rospy
-import rostest
 from nav_msgs.msg import Odometry
 from programs import memory_of
 from simulator import SimulatorTest, process_of, topics_of, wait_until
@@ -51,8 +47,3 @@ class SpawnDeleteTest(SimulatorTest):
             return odometry and odometry[-1].twist.twist.linear.x > 0.05
 
         wait_until(moves, 'driving')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_spawn_delete', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'spawn_delete', SpawnDeleteTest, sys.argv)

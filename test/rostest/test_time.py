@@ -1,12 +1,8 @@
-#!/usr/bin/env python3
 """Simulated time: /clock, pause and the two resets."""
 
 import itertools
-import sys
 import time
 
-import rospy
-import rostest
 from gazebo_msgs.msg import LinkStates, ModelStates
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -109,8 +105,3 @@ class TimeTest(SimulatorTest):
 
     def _height(self):
         return self.model_state('rosbots', '').pose.position.z
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_time', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'time', TimeTest, sys.argv)

@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """The ROS tools listed in doc/interface.md are found by rosrun and work with the simulator."""
 
 import re
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 import rospy
-import rostest
 from programs import ran
 from simulator import DEADLINE, SimulatorTest, wait_until
 
@@ -66,8 +63,3 @@ class ToolsTest(SimulatorTest):
             rosrun('dynamic_reconfigure', 'dynparam', 'set', '/gazebo', 'gravity_z', '--', gravity)
             output = rosrun('dynamic_reconfigure', 'dynparam', 'get', '/gazebo')
             self.assertIn(f"'gravity_z': {gravity}", output)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_tools', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'tools', ToolsTest, sys.argv)

@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """World files of users: valid, partly valid, and missing ones."""
 
-import sys
 import tempfile
 import unittest
 from functools import partial
 from pathlib import Path
 
 import rospy
-import rostest
 from gazebo_msgs.srv import (
     GetModelState,
     GetPhysicsProperties,
@@ -98,8 +95,3 @@ class WorldFilesTest(unittest.TestCase):
         self.assertEqual(code, 0)
         self.assertIn('tottime', printed)
         self.assertIn('pybullet', printed)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_world_files', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'world_files', WorldFilesTest, sys.argv)
