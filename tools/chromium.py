@@ -18,14 +18,14 @@ OPTIONS = [
     '--disable-dev-shm-usage',
     '--disable-background-networking',
     '--disable-component-update',
-    '--disable-gpu-rasterization',  # texts are drawn faster without the software's WebGL
+    '--disable-gpu-compositing',  # only the scene is drawn by the software's WebGL, not the page
     '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
 ]
 CLOCK = "return document.querySelector('.clock b')?.textContent ?? ''"
 UNTIDY = 'Tried to update non-existent component'  # of what was removed in the same frame
 # [ms] before each frame: pages that draw all the time, in software, would keep the processors busy.
-PAUSE = 500
+PAUSE = 250
 # Frames come seldom, and the scene is drawn only in that at which somebody looks: see `picture`.
 # So are the maps of shadows, which three.js draws anew for each frame.
 DRAW_SELDOM = """
