@@ -28,13 +28,17 @@ LONGEST = (
     'own_package',
     'simulator',
     'lessons',
-    'never_down',
     'hostile_names',
+    'never_down',
     'soak',
     'chromium',
-    'neighbours',
-    'frames',
     'hostile',
+    'frames',
+    'controllers',
+    'pip_install',
+    'neighbours',
+    'install_space',
+    'tools',
 )
 # Independent of the caller's master and addresses, and of unbuffered output.
 NOT_OURS = ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED')
