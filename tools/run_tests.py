@@ -243,8 +243,10 @@ def main(argv: list[str] | None = None) -> int:
     """Run what the command line names, by default all phases; return the exit code."""
     arguments = parse(argv)
     os.environ['PYTHONHASHSEED'] = str(arguments.seed)
-    # Else each of the hundreds of processes would compile our sources anew.
+    # Else each of the hundreds of processes would compile our sources anew, and threads of numpy's
+    # library would spin for 0.1 s when it starts.
     os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     # A shell lets what runs in its background ignore Ctrl-C, and all tests would inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     shutil.rmtree(REPORTS, ignore_errors=True)

@@ -3,7 +3,6 @@
 import argparse
 import gc
 import logging
-import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -110,8 +109,6 @@ def _main(arguments: Sequence[str]) -> int:
                 f'the Python module {module} is missing; install it for {sys.executable} with: '
                 f'pip install {package}',
             )
-    # Idle threads of numpy's library would spin.
-    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     gc.disable()  # modules are never freed; collecting during imports costs time
     from ..ros_api.node import node  # imports the modules checked above
 

@@ -26,6 +26,8 @@ def run(main: Callable[[], int]) -> int:
     Ctrl-C that `main` does not handle, such as during imports, ends the program silently.
     """
     _use_utf8()
+    # Else numpy's library starts a thread for each processor, which spins for 0.1 s.
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     _set_process_name()
     _occupy_closed_descriptors()
     sys.stdin = sys.stdin or open(os.devnull, encoding='utf-8')  # noqa: SIM115

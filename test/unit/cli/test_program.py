@@ -104,6 +104,25 @@ def test_process_is_named_after_the_program(tmp_path):
     assert (done.returncode, done.stdout) == (0, 'gzserver\n')
 
 
+THREADS = textwrap.dedent("""\
+    import os, sys
+    from rosbots_description.cli.program import run
+
+    def main():
+        import numpy
+        print(len(os.listdir('/proc/self/task')))
+        return 0
+
+    sys.exit(run(main))
+    """)
+
+
+def test_numpy_starts_no_threads_of_its_own(monkeypatch):
+    monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
+    done = python(THREADS)
+    assert (done.returncode, done.stdout) == (0, '1\n')
+
+
 INTERRUPTED = textwrap.dedent("""\
     import os, signal, sys, time
     from rosbots_description.cli.program import run
