@@ -43,9 +43,13 @@ def test_a_changed_test_runs():
     assert name in changed.choose([name]).cases
 
 
-def test_a_program_of_rostests_runs_the_files_that_name_it():
-    choice = changed.choose(['test/rostest/test_frames.py'])
-    assert [path.name for path in choice.rostests] == ['frames.test']
+@pytest.mark.parametrize(
+    ('program', 'runs'),
+    [('test_frames.py', 'frames.test'), ('test_services.py', 'simulator.test')],
+)
+def test_a_program_of_rostests_runs_the_files_that_name_it(program, runs):
+    choice = changed.choose([f'test/rostest/{program}'])
+    assert [path.name for path in choice.rostests] == [runs]
     assert changed.choose(['test/rostest/simulator.py']).rostests is None
 
 

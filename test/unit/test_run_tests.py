@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import sys
 from pathlib import Path
@@ -35,6 +36,13 @@ def test_the_longest_rostests_begin_first_and_none_is_lost():
     ordered = rostests.in_order(every)
     assert sorted(ordered) == every
     assert [path.stem for path in ordered[: len(rostests.LONGEST)]] == list(rostests.LONGEST)
+
+
+def test_every_file_of_rostests_is_run_once():
+    written = [path.name for path in rostests.FOLDER.glob('test_*.py')]
+    texts = [path.read_text(encoding='utf-8') for path in rostests.FOLDER.glob('*.test')]
+    run = [name for text in texts for name in re.findall(r'\btest_\w+\.py', text)]
+    assert sorted(run) == sorted(written)
 
 
 def test_failures_are_named_as_pytest_names_them(tmp_path):
