@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Runs the tests of several files, one after the other, with one simulator.
+"""Runs the tests of several files, one after the other, with what a .test file starts.
 
-rostest starts everything anew for each <test>; so one <test> names these files as its arguments.
+rostest starts all of that anew for each <test>, the master, too; so one <test> names the files of
+tests as its arguments. A name of no file is an error of the tests.
 """
 
 import sys
