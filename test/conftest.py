@@ -55,6 +55,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.path.stem not in LONGEST)
 
 
+def pytest_collection_finish() -> None:
+    """Let the garbage collector leave alone what stays until the end: modules and tests."""
+    gc.freeze()
+
+
 @pytest.fixture
 def no_collection() -> Iterator[None]:
     """Switch the garbage collector off, which would free what is left behind, here or earlier."""
