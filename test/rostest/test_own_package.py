@@ -67,7 +67,8 @@ class Newcomer:
             'ROS_HOSTNAME': 'localhost',
             # catkin_make's own -l makes a build wait while other tests keep the machine busy
             'ROS_PARALLEL_JOBS': f'-j{os.cpu_count()}',
-            'ROS_LANG_DISABLE': 'geneus:genlisp',
+            # nobody looks at what other languages get here; ./rosbots setup builds that for C++
+            'ROS_LANG_DISABLE': 'gencpp:geneus:genlisp',
             # the workspace of ./rosbots if the path of the clone is not plain
             'XDG_CACHE_HOME': os.environ.get('XDG_CACHE_HOME', os.path.expanduser('~/.cache')),
         }
