@@ -94,6 +94,7 @@ class Page:
 
     def __init__(self, driver, address):
         self.driver = driver
+        self._uploads = tempfile.TemporaryDirectory()  # until the page is gone
         driver.get(address + QUERY)
         driver.execute_script(COLLECT_TEXTS)
         wait_until(lambda: clock(driver), 'the clock', SLOW)
@@ -179,7 +180,7 @@ class Page:
 
     def upload(self, name, text):
         file = self.driver.find_element(By.CSS_SELECTOR, 'input[type=file]')
-        path = Path(tempfile.mkdtemp(), name)
+        path = Path(self._uploads.name, name)
         path.write_text(text)
         file.send_keys(str(path))
 

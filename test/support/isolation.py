@@ -21,14 +21,18 @@ _FORK = multiprocessing.get_context('fork')
 class Child:
     """A fork of this process that executes calls on one object; for a `with` statement.
 
-    It starts with a copy of this process's memory, an open world included.
+    It starts with a copy of this process's memory, an open world included. Its temporary files are
+    removed with it.
     """
 
     def __init__(self, make: Callable[[], Any]) -> None:
         """Fork; the child creates its object by `make()`."""
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  closed by __exit__
+        self._scratch = tempfile.TemporaryDirectory()
         self._pipe, theirs = _FORK.Pipe()
-        self._process = _FORK.Process(target=_serve, args=(make, theirs, self._output.fileno()))
+        self._process = _FORK.Process(
+            target=_serve, args=(make, theirs, self._output.fileno(), self._scratch.name)
+        )
         self._process.start()
         theirs.close()
 
@@ -41,6 +45,7 @@ class Child:
         self._process.join()
         self._process.close()
         self._output.close()
+        self._scratch.cleanup()
 
     def call(self, method: str, *arguments: Any) -> Any:
         """Return what the object's method returns.
@@ -90,9 +95,10 @@ class _Once:
         self.run = function
 
 
-def _serve(make: Callable[[], Any], pipe: Any, output: int) -> None:
+def _serve(make: Callable[[], Any], pipe: Any, output: int, scratch: str) -> None:
     """Run the child; none of its exceptions and output reaches the parent's terminal."""
     faulthandler.disable()  # the signal is reported by the parent
+    tempfile.tempdir = scratch
     os.dup2(output, sys.__stdout__.fileno())
     os.dup2(output, sys.__stderr__.fileno())
     target = None
