@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """The nine steps of the article, each in its own terminal."""
 
-import os
-import shutil
 import signal
 import sys
 import unittest
@@ -14,7 +12,7 @@ import rostest
 from gazebo_msgs.srv import GetModelState
 from programs import ran
 from simulator import wait_until
-from terminal import Terminal
+from terminal import Terminal, open_display
 
 STEP = 90.0  # [s, wall] timeout of the output of a step
 MOVED = 0.05  # [m] or [rad], far more than a standing robot drifts
@@ -114,10 +112,8 @@ class ArticleTest(unittest.TestCase):
 
     def test_rviz_shows_the_robot(self):
         # 2: on the user's display or a virtual one
-        command = ['roslaunch', 'rosbots_description', 'rviz.launch']
-        if 'DISPLAY' not in os.environ:
-            self.assertTrue(shutil.which('xvfb-run'), 'install xvfb')
-            command = ['xvfb-run', '-a', *command]
+        self.addCleanup(open_display())
+        command = ('roslaunch', 'rosbots_description', 'rviz.launch')
         view = debian_rviz.start(lambda: self.open(*command), STEP)
         for node in ('/joint_state_publisher', '/robot_state_publisher', '/rviz'):
             wait_until(lambda node=node: node in output_of('rosnode', 'list').split(), node, STEP)

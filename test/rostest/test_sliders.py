@@ -9,9 +9,9 @@ import rospy
 import rostest
 from sensor_msgs.msg import JointState
 from simulator import wait_until
-from terminal import Terminal
+from terminal import Terminal, open_display
 
-START = 90.0  # [s, wall] timeout of launch file, display and window
+START = 90.0  # [s, wall] timeout of launch file and window
 SLIDER = 2.0 * math.pi / 10000  # [rad] resolution of a slider
 AT_FIRST = {'wheel_left_joint': 1.0, 'wheel_right_joint': 0.0}  # [rad]
 
@@ -21,14 +21,9 @@ class SlidersTest(unittest.TestCase):
         rospy.set_param('/zeros/wheel_left_joint', AT_FIRST['wheel_left_joint'])
         messages = []
         rospy.Subscriber('/joint_states', JointState, messages.append)
+        self.addCleanup(open_display())
         terminal = Terminal(
-            'xvfb-run',
-            '-a',
-            'roslaunch',
-            'rosbots_description',
-            'rviz.launch',
-            'gui:=true',
-            'rviz:=false',
+            'roslaunch', 'rosbots_description', 'rviz.launch', 'gui:=true', 'rviz:=false'
         )
         self.addCleanup(terminal.close)
         try:
