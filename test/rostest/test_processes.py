@@ -7,6 +7,7 @@ import sys
 import tempfile
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
@@ -71,6 +72,8 @@ class ProcessTest(unittest.TestCase):
             spawn = proxy('spawn_urdf_model', SpawnModel)
             self.assertTrue(spawn('rosbots', xml, '/', pose(), '').success)
             lines = self.assert_ends(server, number).splitlines()
+            with self.assertRaises(rosgraph.MasterError):  # else it would keep the address
+                rosgraph.Master(rospy.get_name()).lookupNode('/gazebo')
             self.assertIn('Finished loading Gazebo ROS API Plugin.', lines[0])
             self.assertEqual([line for line in lines if not ROS_LINE.match(line)], [])
 

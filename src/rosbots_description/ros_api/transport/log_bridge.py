@@ -4,14 +4,12 @@ import logging
 from collections.abc import Callable
 
 import rospy
-from rospy.impl.paramserver import get_param_server_cache
 from rospy.rostime import _set_rostime
 
 from ...sim.core import Fault, log_fault, one_line
 
 _ROOT = __name__.partition('.')[0]  # the package, by the name it was imported as
 _REMEMBERED = 1000  # distinct warnings
-_WITHOUT_TOPICS = '/rosout_disable_topics_generation'  # a parameter of rospy
 _LEVELS = {
     'debug': logging.DEBUG,
     'info': logging.INFO,
@@ -35,7 +33,6 @@ def connect_logging(now_ns: Callable[[], int]) -> None:
         ours.addHandler(handler)
     ours.setLevel(rosout.level)
     ours.propagate = False
-    _remember_parameter()
 
 
 def set_level(name: str) -> None:
@@ -46,16 +43,6 @@ def set_level(name: str) -> None:
     level = _LEVELS.get(name.lower())
     if level is not None:
         logging.getLogger(_ROOT).setLevel(level)
-
-
-def _remember_parameter() -> None:
-    """Read the parameter that rospy needs for each message to /rosout.
-
-    Unless it is set, rospy would ask the master anew for each message, and a master that does not
-    answer would stop the simulation. rospy has no public API for its cache.
-    """
-    value = rospy.get_param_cached(_WITHOUT_TOPICS, False)
-    get_param_server_cache().set(_WITHOUT_TOPICS, value)
 
 
 def _console_and_file(logger: logging.Logger | None) -> list[logging.Handler]:

@@ -3,6 +3,7 @@
 The ROS master shuts a node down as soon as another one registers with its name.
 """
 
+import contextlib
 import socket
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from http.client import HTTPConnection
 from typing import Any
 from urllib.parse import urlsplit
 from xmlrpc.client import Error as XmlRpcError
-from xmlrpc.client import ServerProxy, Transport
+from xmlrpc.client import Fault, ServerProxy, Transport
 
 import rosgraph
 from rosgraph.names import get_ros_namespace, load_mappings, ns_join
@@ -68,11 +69,20 @@ def running_node(name: str) -> RunningNode | None:
         return None  # stale entry of a killed node
     try:
         node: Any = ServerProxy(uri, transport=_TimeoutTransport())
+        with contextlib.suppress(Fault):  # of nodes of other libraries than rospy
+            # Of two masters on one machine the port differs, however their addresses are written.
+            told = node.getName(name)[2], _port(node.getMasterUri(name)[2])
+            if told != (name, _port(rosgraph.get_master_uri())):
+                return None  # another node has its port now
         return RunningNode(uri, node.getPid(name)[2])
     except TimeoutError:
         return RunningNode(uri, None)
-    except (*NO_MASTER, XmlRpcError):  # another program has its port now
+    except (*NO_MASTER, XmlRpcError, TypeError, ValueError, LookupError):  # no node answers so
         return None
+
+
+def _port(uri: object) -> int | None:
+    return urlsplit(str(uri)).port
 
 
 def require_free(name: str) -> None:

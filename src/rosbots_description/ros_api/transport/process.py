@@ -10,10 +10,12 @@ import rospy
 import rospy.impl.init
 from rosgraph.network import get_address_override
 from rospy.impl import registration
+from rospy.impl.paramserver import get_param_server_cache
 
 from .log_file import disable_log_file, log_file, tolerate_full_disk, write_error
 from .polling import close_pollers
 
+_WITHOUT_TOPICS = '/rosout_disable_topics_generation'  # a parameter of rospy
 _POLL_PERIOD = 0.001  # between polls of the node's registration [s, wall]
 
 
@@ -33,6 +35,7 @@ def init_node(name: str, arguments: Sequence[str], **options: bool) -> None:
     close_pollers()
     rospy.init_node(name, [name, *arguments, *(disable_log_file() if reason else ())], **options)
     _end_at_once()
+    _remember_parameter()
     tolerate_full_disk()
     if reason:
         rospy.logwarn(
@@ -123,3 +126,15 @@ def _end_at_once() -> None:
                 condition.notify_all()
 
     rospy.core.add_shutdown_hook(wake)
+
+
+def _remember_parameter() -> None:
+    """Read the parameter that rospy needs for each message to /rosout, without subscribing to it.
+
+    rospy would subscribe, which it never takes back: the master would keep the address of a node
+    that has ended, and shut down whoever has it by the time that the name is registered again. If
+    the parameter is not set, rospy would even ask for each message, and a master that does not
+    answer would stop the simulation. There is no public API for its cache.
+    """
+    value = rospy.get_param(_WITHOUT_TOPICS, False)
+    get_param_server_cache().set(_WITHOUT_TOPICS, value)

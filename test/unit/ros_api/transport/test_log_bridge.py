@@ -2,13 +2,8 @@
 
 import logging
 from dataclasses import replace
-from unittest.mock import Mock
 
 import pytest
-import rospy
-import rospy.client
-from rospy.impl import paramserver, rosout
-from rospy.msproxy import MasterProxy
 
 from rosbots_description.ros_api.transport import log_bridge
 from rosbots_description.ros_api.transport.log_bridge import FaultLog, RecordPreparation
@@ -62,19 +57,3 @@ def test_other_faults_are_logged_each_time(caplog, where):
     log(fault)
     log(fault)
     assert caplog.messages == ['bad', 'bad']
-
-
-@pytest.mark.parametrize(('answer', 'value'), [({}, False), (True, True)])  # {}: it is not set
-def test_a_message_to_rosout_asks_the_master_nothing(monkeypatch, answer, value):
-    master = MasterProxy('http://localhost:9')
-    master.target = Mock(subscribeParam=Mock(return_value=(1, '', answer)))
-    monkeypatch.setattr(rospy.client, '_param_server', master)
-    monkeypatch.setattr(paramserver, '_param_server_cache', None)
-    log_bridge._remember_parameter()
-    asked = master.target.subscribeParam
-    ((_, _, name),) = (call.args for call in asked.call_args_list)
-    assert rospy.get_param_cached(name, False) is value
-    asked.assert_called_once()
-    # It is what rospy looks up, and that way.
-    assert name in rosout._rosout.__code__.co_consts
-    assert 'get_param_cached' in rosout._rosout.__code__.co_names

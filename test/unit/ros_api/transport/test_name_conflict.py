@@ -4,6 +4,7 @@ import http.server
 import os
 import socket
 from unittest import mock
+from urllib.parse import urlsplit
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
@@ -77,6 +78,28 @@ def test_port_reused_by_another_program_is_no_conflict(registered):
     with serving(server) as uri:
         registered[NAME] = uri
         require_free(NAME)
+
+
+@pytest.mark.parametrize(
+    ('changed', 'is_free'),
+    [
+        ({}, False),
+        ({'getName': '/other'}, True),
+        ({'getMasterUri': 'http://localhost:1'}, True),
+        ({'getMasterUri': 'http://localhost:port'}, True),
+        ({'getMasterUri': 5}, True),
+    ],
+    ids=str,
+)
+def test_port_reused_by_another_node_is_no_conflict(registered, changed, is_free):
+    master = f'http://127.0.0.1:{urlsplit(os.environ["ROS_MASTER_URI"]).port}'
+    answers = {'getName': NAME, 'getMasterUri': master, 'getPid': os.getpid()} | changed
+    server = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
+    for call, answer in answers.items():
+        server.register_function(lambda _caller, answer=answer: (1, '', answer), call)
+    with serving(server) as uri:
+        registered[NAME] = uri
+        assert running_node(NAME) == (None if is_free else RunningNode(uri, os.getpid()))
 
 
 def test_stopped_process_still_has_its_name(registered, monkeypatch):

@@ -1,10 +1,14 @@
-"""Nodes start without the fixed sleeps of rospy, and end without a master."""
+"""Nodes start without the fixed sleeps of rospy, and end without a master and without a trace."""
 
 import threading
 from types import SimpleNamespace
+from unittest.mock import Mock
 
+import pytest
+import rospy.client
 import rospy.impl.init
-from rospy.impl import registration
+from rospy.impl import paramserver, registration, rosout
+from rospy.msproxy import MasterProxy
 from support.patience import PATIENCE
 
 from rosbots_description.ros_api.transport import process
@@ -53,3 +57,19 @@ def test_a_registration_that_no_master_takes_ends_with_the_node(monkeypatch):
     register.start()
     register.join(PATIENCE)
     assert not register.is_alive()
+
+
+@pytest.mark.parametrize(
+    ('answer', 'value'), [((-1, 'not set', 0), False), ((1, '', True), True)], ids=str
+)
+def test_a_message_to_rosout_asks_the_master_nothing(monkeypatch, answer, value):
+    master = MasterProxy('http://localhost:9')
+    master.target = Mock(spec=['getParam'], getParam=Mock(return_value=answer))
+    monkeypatch.setattr(rospy.client, '_param_server', master)
+    monkeypatch.setattr(paramserver, '_param_server_cache', None)
+    process._remember_parameter()
+    ((_, name),) = (call.args for call in master.target.getParam.call_args_list)
+    assert rospy.get_param_cached(name, False) is value
+    # It is what rospy looks up, and that way.
+    assert name in rosout._rosout.__code__.co_consts
+    assert 'get_param_cached' in rosout._rosout.__code__.co_names
