@@ -2,8 +2,10 @@
 
 import base64
 import io
+import os
+import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 
 from PIL import Image
 from selenium import webdriver
@@ -79,8 +81,12 @@ def chromium(size: tuple[int, int], *more: str) -> Iterator[webdriver.Chrome]:
     options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
     for option in (*OPTIONS, *more):
         options.add_argument(option)
-    driver = webdriver.Chrome(service=Service('/usr/bin/chromedriver'), options=options)
-    try:
+    with ExitStack() as stack:
+        # Whatever it leaves there goes with it; processes of it may end after its driver.
+        scratch = stack.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True))
+        service = Service('/usr/bin/chromedriver', env=os.environ | {'TMPDIR': scratch})
+        driver = webdriver.Chrome(service=service, options=options)
+        stack.callback(driver.quit)
         driver.set_script_timeout(HOPELESS)
         width, height = size
         driver.execute_cdp_cmd(
@@ -92,8 +98,6 @@ def chromium(size: tuple[int, int], *more: str) -> Iterator[webdriver.Chrome]:
             'Page.addScriptToEvaluateOnNewDocument', {'source': f'{{{DRAW_SELDOM}}}'}
         )
         yield driver
-    finally:
-        driver.quit()
 
 
 def picture(driver: webdriver.Chrome) -> Image.Image:
