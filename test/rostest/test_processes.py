@@ -6,6 +6,10 @@ import signal
 import sys
 import tempfile
 import unittest
+from pathlib import Path
+from types import SimpleNamespace
+from urllib.parse import urlsplit
+from xmlrpc.server import SimpleXMLRPCServer
 
 import rosgraph
 import rospy
@@ -16,6 +20,9 @@ from rosgraph_msgs.msg import Clock
 from server_process import ServerProcess
 from simulator import BOX, hears, pose, proxy, topics_of, wait_until
 from std_srvs.srv import Empty
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from support.serving import serving
 
 NO_MASTER = 'No ROS master - start roscore to continue...'
 ROS_LINE = re.compile(r'(\x1b\[\d+m)?\[(INFO|WARN)\] \[')
@@ -120,13 +127,20 @@ class ProcessTest(unittest.TestCase):
             f'replaces the node /gazebo, process {first.process.pid} on ', self.assert_ends(second)
         )
 
-    def test_server_starts_after_one_was_killed(self):
+    def test_server_starts_after_one_was_killed_and_ends_nobody_at_its_address(self):
         first = self.start().wait_ready()
+        port = urlsplit(rosgraph.Master(rospy.get_name()).lookupNode('/gazebo')).port
         first.process.kill()
         first.process.wait()
-        second = self.start()
-        wait_until(self._has_only_the_ground, 'a response of the second server')
-        self.assert_ends(second)
+        asked = []
+        stranger = SimpleXMLRPCServer(('', port), logRequests=False)
+        stranger.register_instance(SimpleNamespace(_dispatch=lambda call, _: asked.append(call)))
+        with serving(stranger):
+            second = self.start().wait_ready()
+            wait_until(self._has_only_the_ground, 'a response of the second server')
+            self.assert_ends(second)
+        self.assertIn('getPid', asked)
+        self.assertNotIn('shutdown', asked)
 
     @staticmethod
     def _has_only_the_ground():

@@ -36,6 +36,7 @@ from ..transport import (
     FaultLog,
     Registrar,
     connect_logging,
+    free_name,
     guard_handshakes,
     guard_messages,
     init_node,
@@ -43,7 +44,6 @@ from ..transport import (
     node_name,
     replacing_node,
     require_address,
-    require_free,
     running_node,
     set_level,
     wait_for_answers,
@@ -216,10 +216,10 @@ def _take_name(name: str, replace: bool) -> None:
     Raises:
         SimError: a running node has that name, and `replace` is false.
     """
-    if not replace:
-        require_free(name)
-    elif other := running_node(name):
+    if replace and (other := running_node(name)):
         _warn(f'this simulator replaces the node {name}, {other}')
+    else:
+        free_name(name)
 
 
 def _end(loop: Loop) -> None:

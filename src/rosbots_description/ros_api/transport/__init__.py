@@ -19,9 +19,9 @@ from .master import (
 )
 from .name_conflict import (
     accepts_connections,
+    free_name,
     node_name,
     replacing_node,
-    require_free,
     running_node,
 )
 from .names import (
@@ -58,6 +58,7 @@ __all__ = [
     'connect_logging',
     'find_tf_prefix',
     'frame_name',
+    'free_name',
     'guard_handshakes',
     'guard_messages',
     'has_service',
@@ -78,7 +79,6 @@ __all__ = [
     'read_parameter',
     'replacing_node',
     'require_address',
-    'require_free',
     'running_node',
     'search_parameter',
     'sender_of',

@@ -85,14 +85,42 @@ def _port(uri: object) -> int | None:
     return urlsplit(str(uri)).port
 
 
-def require_free(name: str) -> None:
-    """Raise `NameTakenError` if a running node has that name."""
-    other = running_node(name)
-    if other:
+def free_name(name: str) -> None:
+    """Let the master forget what a node of that name has left that was killed.
+
+    Else it would shut down whatever node has that address by the time that the name is registered.
+
+    Raises:
+        NameTakenError: a running node has that name.
+        Exception: one of `NO_MASTER`.
+    """
+    if other := running_node(name):
         raise NameTakenError(
             f'a simulator is already running on this ROS master: the node {name}, {other}. Stop it '
             'first, or replace it with the option --replace (extra_gazebo_args:=--replace)'
         )
+    with contextlib.suppress(rosgraph.MasterException):  # the master has forgotten it already
+        _unregister(name)
+
+
+def _unregister(name: str) -> None:
+    """Take leave of the master for a node.
+
+    Raises:
+        MasterException: the master does not know the node, or no longer.
+    """
+    master = rosgraph.Master(name)
+    uri = master.lookupNode(name)
+    published, subscribed, services = (
+        [what for what, nodes in registered if name in nodes]
+        for registered in master.getSystemState()
+    )
+    for topic in published:
+        master.unregisterPublisher(topic, uri)
+    for topic in subscribed:
+        master.unregisterSubscriber(topic, uri)
+    for service in services:
+        master.unregisterService(service, master.lookupService(service))
 
 
 def replacing_node(name: str, uri: str) -> RunningNode | None:

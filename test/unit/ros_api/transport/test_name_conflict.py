@@ -16,9 +16,9 @@ from rosbots_description.ros_api.transport import name_conflict, registrations
 from rosbots_description.ros_api.transport.name_conflict import (
     NameTakenError,
     RunningNode,
+    free_name,
     node_name,
     replacing_node,
-    require_free,
     running_node,
 )
 
@@ -26,10 +26,17 @@ NAME = '/gazebo'
 
 
 @pytest.fixture
-def registered(monkeypatch):
-    """Return the nodes registered with a fake ROS master: name -> URI."""
+def master():
+    """A fake ROS master, without any registrations of topics and services."""
+    made = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
+    made.register_function(lambda _caller: (1, '', [[], [], []]), 'getSystemState')
+    return made
+
+
+@pytest.fixture
+def registered(monkeypatch, master):
+    """Return the nodes registered with the fake master: name -> URI."""
     nodes = {}
-    master = SimpleXMLRPCServer(('localhost', 0), logRequests=False)
     master.register_function(
         lambda _caller, name: (1, '', nodes[name]) if name in nodes else (-1, 'unknown node', ''),
         'lookupNode',
@@ -52,7 +59,7 @@ def living(registered):
 def test_running_node_is_reported_with_its_process_and_host(living):
     assert running_node(NAME) == RunningNode(living, os.getpid())
     with pytest.raises(NameTakenError) as caught:
-        require_free(NAME)
+        free_name(NAME)
     message = str(caught.value)
     assert f'the node {NAME}, process {os.getpid()} on localhost ({living})' in message
     assert '--replace' in message
@@ -60,14 +67,22 @@ def test_running_node_is_reported_with_its_process_and_host(living):
 
 @pytest.mark.usefixtures('registered')
 def test_unregistered_name_is_free():
-    require_free(NAME)
+    free_name(NAME)
 
 
-def test_stale_registration_of_a_killed_node_is_no_conflict(registered):
+def test_master_forgets_a_killed_node_and_nobody_else(registered, master):
     with socket.socket() as probe:
         probe.bind(('localhost', 0))
-        registered[NAME] = f'http://localhost:{probe.getsockname()[1]}/'
-    require_free(NAME)
+        uri = registered[NAME] = f'http://localhost:{probe.getsockname()[1]}/'
+    both, other = [NAME, '/other'], ['/other']
+    state = [[['/clock', both], ['/a', other]], [['/b', [NAME]]], [['/c', other], ['/d', [NAME]]]]
+    left = []
+    master.register_function(lambda _caller: (1, '', state), 'getSystemState')
+    master.register_function(lambda _caller, name: (1, '', f'rosrpc:{name}'), 'lookupService')
+    for call in ('unregisterPublisher', 'unregisterSubscriber', 'unregisterService'):
+        master.register_function(lambda *told: left.append(told) or (1, '', 1), call)
+    free_name(NAME)
+    assert left == [(NAME, '/clock', uri), (NAME, '/b', uri), (NAME, '/d', 'rosrpc:/d')]
 
 
 def test_port_reused_by_another_program_is_no_conflict(registered):
@@ -77,7 +92,7 @@ def test_port_reused_by_another_program_is_no_conflict(registered):
     )
     with serving(server) as uri:
         registered[NAME] = uri
-        require_free(NAME)
+        free_name(NAME)
 
 
 @pytest.mark.parametrize(
@@ -107,7 +122,7 @@ def test_stopped_process_still_has_its_name(registered, monkeypatch):
     with socket.create_server(('localhost', 0)) as stopped:
         registered[NAME] = f'http://localhost:{stopped.getsockname()[1]}/'
         with pytest.raises(NameTakenError, match='a process that does not answer on localhost'):
-            require_free(NAME)
+            free_name(NAME)
 
 
 def test_node_that_took_over_the_name_is_reported(living):
