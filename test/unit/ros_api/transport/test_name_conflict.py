@@ -67,6 +67,7 @@ def test_running_node_is_reported_with_its_process_and_host(living):
 
 @pytest.mark.usefixtures('registered')
 def test_unregistered_name_is_free():
+    assert running_node(NAME) is None
     free_name(NAME)
 
 
@@ -92,6 +93,7 @@ def test_port_reused_by_another_program_is_no_conflict(registered):
     )
     with serving(server) as uri:
         registered[NAME] = uri
+        assert running_node(NAME) is None
         free_name(NAME)
 
 
