@@ -1,6 +1,7 @@
 """Detects name conflicts, so that a second simulator does not end the first one by accident.
 
-The ROS master shuts a node down as soon as another one registers with its name.
+The ROS master shuts a node down as soon as another one registers with its name; if the node has
+ended without leave, whoever has its address by then.
 """
 
 import contextlib
@@ -86,9 +87,9 @@ def _port(uri: object) -> int | None:
 
 
 def free_name(name: str) -> None:
-    """Let the master forget what a node of that name has left that was killed.
+    """Free a name of what a killed node has left with the master; a running node keeps it.
 
-    Else it would shut down whatever node has that address by the time that the name is registered.
+    Else the master would shut down whoever has that address when the name is registered again.
 
     Raises:
         NameTakenError: a running node has that name.
