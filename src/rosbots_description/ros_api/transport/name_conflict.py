@@ -1,7 +1,7 @@
 """Detects name conflicts, so that a second simulator does not end the first one by accident.
 
-The ROS master shuts a node down as soon as another one registers with its name; if the node has
-ended without leave, whoever has its address by then.
+The ROS master shuts a node down as soon as another one registers with its name. If that node was
+killed, the master shuts down whoever has its address by then.
 """
 
 import contextlib
@@ -87,7 +87,7 @@ def _port(uri: object) -> int | None:
 
 
 def free_name(name: str) -> None:
-    """Free a name of what a killed node has left with the master; a running node keeps it.
+    """Free a name that a killed node has left registered with the master.
 
     Else the master would shut down whoever has that address when the name is registered again.
 
@@ -105,7 +105,7 @@ def free_name(name: str) -> None:
 
 
 def _unregister(name: str) -> None:
-    """Take leave of the master for a node.
+    """Remove from the master what a node has registered there.
 
     Raises:
         MasterException: the master does not know the node, or no longer.
