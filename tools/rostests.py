@@ -72,6 +72,7 @@ def run_rostest(path: Path) -> Count:
     log = results / 'output.log'
     environment = {
         **os.environ,
+        'ROS_ETC_DIR': str(FOLDER / 'etc'),
         'ROS_TEST_RESULTS_DIR': str(results),
         'ROS_LOG_DIR': str(results / 'log'),
     }
