@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 _PR_SET_PDEATHSIG = 1  # of prctl(2)
 PERIOD = 1.0  # time between polls while a window is open [s]
@@ -18,6 +19,7 @@ PERIOD = 1.0  # time between polls while a window is open [s]
 # one of 28 starts. Later crashes have other causes and would recur, so they are not retried.
 STARTS = 4  # at most
 OPENS = 30.0  # time within which a crash counts as one of the start [s]
+CARDS = 'dri/renderD*', 'nvidia0', 'dxg'  # in /dev: of Linux, of NVIDIA's driver, of Windows
 CRASHES = {-signal.SIGSEGV, -signal.SIGABRT, -signal.SIGBUS}
 
 
@@ -35,6 +37,11 @@ def display_works() -> bool:
         return False
     x11.XCloseDisplay(ctypes.c_void_p(display))
     return True
+
+
+def has_graphics_card() -> bool:
+    """Tell whether programs draw on one here; else it is done in software."""
+    return any(any(Path('/dev').glob(card)) for card in CARDS)
 
 
 def no_window() -> str:

@@ -11,13 +11,14 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from .display import display_works, no_window, run_window
+from .display import display_works, has_graphics_card, no_window, run_window
 from .gzserver import split_remappings
 from .program import fail, say
 
 _say = partial(say, 'gzclient')
 # The window shows poses from the simulator, independent of /tf.
 OWN_FRAMES = ('/tf:=gazebo/view/tf', '/tf_static:=gazebo/view/frames')
+OFTEN, SELDOM = 'Frame Rate: 30', 'Frame Rate: 10'
 
 
 def parser() -> argparse.ArgumentParser:
@@ -57,8 +58,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     rviz, config = shutil.which('rviz'), config_file()
     if rviz is None:
         return fail('gzclient', 'no window: rviz is not installed; on Debian: apt install rviz')
-    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_unique_name(remappings)]
     environment = rviz_environment(os.environ, config.with_name('gzclient_log.config'))
+    folder = environment.get('XDG_RUNTIME_DIR')
+    if folder and not has_graphics_card():
+        config = drawn_seldom(config, folder)
+    command = [rviz, '-d', str(config), *OWN_FRAMES, *remappings, *_unique_name(remappings)]
     from ..ros_api.clients.server_watch import ServerWatch  # not needed without a window
 
     return run_window(
@@ -79,6 +83,20 @@ def rviz_environment(given: Mapping[str, str], log_levels: Path) -> dict[str, st
                 folder.chmod(0o700)
                 made['XDG_RUNTIME_DIR'] = str(folder)
     return made
+
+
+def drawn_seldom(config: Path, folder: str) -> Path:
+    """Return a copy of RViz's config, in this folder, with fewer pictures per second.
+
+    Drawn without a graphics card, 30 keep a processor busy, which the simulation lacks. Where the
+    folder cannot be written to, it is the config itself.
+    """
+    copy = Path(folder, config.name)
+    made = copy.with_suffix(f'.{os.getpid()}')  # renamed when whole: other windows may open now
+    with contextlib.suppress(OSError):
+        made.write_text(config.read_text(encoding='utf-8').replace(OFTEN, SELDOM), encoding='utf-8')
+        return made.replace(copy)
+    return config
 
 
 def _unique_name(remappings: Sequence[str]) -> list[str]:

@@ -12,7 +12,7 @@ from support import ROOT
 from support.patience import PATIENCE, wait_until
 from support.programs import is_running
 
-from rosbots_description.cli.gzclient import config_file, rviz_environment
+from rosbots_description.cli.gzclient import config_file, drawn_seldom, rviz_environment
 
 WINDOW = """#!/bin/sh
 echo $$ "$@" > {folder}/arguments
@@ -20,17 +20,18 @@ exec sleep 60
 """
 MAIN = (
     'import sys; from rosbots_description.cli import gzclient; '
-    'gzclient.display_works = lambda: True; sys.exit(gzclient.main(sys.argv[1:]))'
+    'gzclient.display_works = lambda: True; gzclient.has_graphics_card = lambda: {}; '
+    'sys.exit(gzclient.main(sys.argv[1:]))'
 )
 
 
-def open_window(folder, text):
+def open_window(folder, text, card=True):
     """Start gzclient with a program of this text instead of RViz."""
     program = folder / 'rviz'
     program.write_text(text)
     program.chmod(0o755)
     return subprocess.Popen(
-        [sys.executable, '-c', MAIN, '--verbose', '__name:=gazebo_gui'],
+        [sys.executable, '-c', MAIN.format(card), '--verbose', '__name:=gazebo_gui'],
         env={
             **os.environ,
             'PATH': f'{folder}:{os.environ["PATH"]}',
@@ -39,6 +40,30 @@ def open_window(folder, text):
         stderr=subprocess.PIPE,
         text=True,
     )
+
+
+def rate_of(config):
+    return yaml.safe_load(config.read_text())['Visualization Manager']['Global Options'][
+        'Frame Rate'
+    ]
+
+
+def test_pictures_are_fewer_without_a_graphics_card(tmp_path):
+    copy = drawn_seldom(config_file(), str(tmp_path))
+    assert (rate_of(config_file()), rate_of(copy)) == (30, 10)
+    assert [*tmp_path.iterdir()] == [copy]
+    assert drawn_seldom(config_file(), str(tmp_path)) == copy
+
+
+def test_pictures_are_as_many_where_no_copy_can_be_made(tmp_path):
+    assert drawn_seldom(config_file(), str(tmp_path / 'not there')) == config_file()
+
+
+@pytest.mark.parametrize(('card', 'rate'), [(True, 30), (False, 10)])
+def test_window_shows_the_config_for_its_card(tmp_path, card, rate):
+    process = open_window(tmp_path, '#!/bin/sh\ncp "$2" {}\n'.format(tmp_path / 'shown'), card)
+    process.communicate(timeout=PATIENCE)
+    assert rate_of(tmp_path / 'shown') == rate
 
 
 @pytest.fixture
