@@ -38,7 +38,11 @@ LONGEST = (
     'pip_install',
     'neighbours',
     'install_space',
+    'rosbots_script',
     'tools',
+    'processes',
+    'gzweb',
+    'window',
 )
 # Independent of the caller's master and addresses, and of unbuffered output.
 NOT_OURS = ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOSTNAME', 'ROS_NAMESPACE', 'PYTHONUNBUFFERED')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """A part of the benchmark that is interrupted ends its master, server and clients."""
 
 import os
@@ -8,7 +7,6 @@ import sys
 import unittest
 from pathlib import Path
 
-import rostest
 from simulator import DEADLINE, wait_until
 
 from rosbots_description.cli.launched import descendants
@@ -45,7 +43,3 @@ class BenchmarksTest(unittest.TestCase):
         printed, _ = process.communicate(timeout=DEADLINE)
         self.assertEqual(process.returncode, 128 + signal.SIGTERM, printed)
         self.assertEqual([name_of(pid) for pid in family if name_of(pid)], [])
-
-
-if __name__ == '__main__':
-    rostest.rosrun('rosbots_description', 'benchmarks', BenchmarksTest, sys.argv)

@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """./rosbots demo spawns, drives and deletes the robot; it needs no workspace."""
 
 import os
 import re
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
-
-import rostest
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -46,7 +42,3 @@ class Demo(unittest.TestCase):
             log = Path(folder, 'simulator.log').read_text(encoding='utf-8')
             self.assertNotIn('/.ws/devel/', log)
             self.assertNotIn('Traceback', log)
-
-
-if __name__ == '__main__':
-    rostest.rosrun('rosbots_description', 'demo', Demo, sys.argv)

@@ -17,6 +17,7 @@ from gazebo_msgs.srv import (
     SpawnModelRequest,
 )
 from nav_msgs.msg import Odometry
+from programs import find_program
 from raw_client import (
     answer,
     connection,
@@ -84,9 +85,7 @@ class DyingClientsTest(OwnServerTest):
         for i in range(5):
             with subprocess.Popen(
                 [
-                    'rosrun',
-                    'gazebo_ros',
-                    'spawn_model',
+                    find_program('gazebo_ros', 'spawn_model'),
                     '-urdf',
                     '-param',
                     'robot_description',

@@ -1,10 +1,8 @@
-#!/usr/bin/env python3
 """The server runs in restricted environments, and reports what is missing."""
 
 import contextlib
 import os
 import shutil
-import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -12,7 +10,6 @@ from urllib.parse import quote
 from xml.sax.saxutils import escape, quoteattr
 
 import rospy
-import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from programs import ran
 from server_process import ServerProcess
@@ -252,8 +249,3 @@ class EnvironmentsTest(unittest.TestCase):
             self.assertEqual(models, [GROUND])
             self.assertTrue(launched.running)
         self.assertIn('DISPLAY is not set', log.read_text())
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_environments', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'environments', EnvironmentsTest, sys.argv)

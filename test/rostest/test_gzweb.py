@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The browser's window looks only when it is looked at, and acts by the simulator's services."""
 
 import math
@@ -10,7 +9,6 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import rospy
-import rostest
 from gazebo_msgs.srv import (
     DeleteModel,
     GetJointProperties,
@@ -366,8 +364,3 @@ class GzwebTest(unittest.TestCase):
             f'gzweb: no window at 127.0.0.1, port {port}: Address '
             'already in use; web_port and web_host choose others\r\n',
         )
-
-
-if __name__ == '__main__':
-    rospy.init_node('browser', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'browser', GzwebTest)

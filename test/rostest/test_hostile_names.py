@@ -24,6 +24,7 @@ import rostest
 from gazebo_msgs.msg import ContactsState, ContactState
 from gazebo_msgs.srv import DeleteLight, SpawnModel
 from geometry_msgs.msg import Twist, Vector3
+from programs import find_program
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from sensor_msgs.msg import Imu
@@ -105,7 +106,7 @@ class HostileNamesTest(unittest.TestCase):
         log.touch(mode=0o600)  # else it gets no token
         with log.open('wb') as output:
             window = subprocess.Popen(
-                ['rosrun', 'gazebo_ros', 'gzweb', '--port', '0'], stdout=output, stderr=output
+                [find_program('gazebo_ros', 'gzweb'), '--port', '0'], stdout=output, stderr=output
             )
         cls.addClassCleanup(window.wait)
         cls.addClassCleanup(window.kill)

@@ -26,6 +26,7 @@ from gazebo_msgs.srv import (
     SpawnModel,
 )
 from PIL import Image
+from programs import find_program
 from rosbots_msgs.srv import Step
 from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver import ActionChains
@@ -244,7 +245,7 @@ class ChromiumTest(unittest.TestCase):
     @classmethod
     def open_window(cls, port):
         """Start gzweb; return the address of its page."""
-        cls.window = window = Terminal('rosrun', 'gazebo_ros', 'gzweb', '--port', port)
+        cls.window = window = Terminal(find_program('gazebo_ros', 'gzweb'), '--port', port)
         cls.addClassCleanup(window.close)
         return page_address(window.shown, SLOW)
 

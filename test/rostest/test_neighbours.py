@@ -1,15 +1,12 @@
-#!/usr/bin/env python3
 """Several simulators on one machine do not disturb each other."""
 
 import contextlib
 import os
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import rospy
-import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from server_process import MasterProcess, ServerProcess
 from simulator import BOX, pose, proxy, wait_until
@@ -116,8 +113,3 @@ class NeighboursTest(unittest.TestCase):
                 self.assertEqual(server.end()[0], 0)
             left = [name for name in os.listdir(folder) if not name.startswith('.')]
             self.assertEqual(left, [])
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_neighbours', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'neighbours', NeighboursTest, sys.argv)

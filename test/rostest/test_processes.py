@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The programs as processes: start, waiting, exit, and output."""
 
 import re
@@ -13,7 +12,6 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import rosgraph
 import rospy
-import rostest
 from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from network import services_of
 from rosgraph_msgs.msg import Clock
@@ -188,8 +186,3 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(code, 0)
         self.assertIn('Spawn status: SpawnModel: Successfully spawned entity', printed)
         self.assert_ends(server)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_processes', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'processes', ProcessTest, sys.argv)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """A robot is built, what its launch file starts is simulated, and its rostests run."""
 
 import sys
@@ -7,7 +6,6 @@ import unittest
 from pathlib import Path
 from xml.etree import ElementTree
 
-import rostest
 from programs import ran_merged
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -95,7 +93,3 @@ class RobotCheckTest(unittest.TestCase):
             code, output = self.check(*arguments)
             self.assertNotEqual(code, 0)
             self.assertIn(sentence, output)
-
-
-if __name__ == '__main__':
-    rostest.rosrun('rosbots_description', 'robot_check', RobotCheckTest, sys.argv)

@@ -1,12 +1,9 @@
-#!/usr/bin/env python3
 """rviz.launch with sliders: joint states have the values of the sliders."""
 
 import math
-import sys
 import unittest
 
 import rospy
-import rostest
 from sensor_msgs.msg import JointState
 from simulator import wait_until
 from terminal import Terminal, open_display
@@ -37,8 +34,3 @@ class SlidersTest(unittest.TestCase):
         for joint, position in AT_FIRST.items():
             self.assertAlmostEqual(shown[joint], position, delta=SLIDER)
         self.assertNotIn('Traceback', terminal.shown())
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_sliders', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'sliders', SlidersTest, sys.argv)

@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """spawn_model waits for a simulator, and ends on Ctrl-C."""
 
 import signal
-import sys
 import time
 import unittest
 
 import rospy
-import rostest
 from gazebo_msgs.srv import DeleteModel, DeleteModelResponse, SpawnModel, SpawnModelResponse
 from programs import find_program
 from simulator import DEADLINE, wait_until
@@ -111,8 +108,3 @@ class SpawnModelTest(unittest.TestCase):
         self._terminal.process.send_signal(signal.SIGINT)
         self._assert_ends(0)
         self.assertEqual([request.model_name for request in self._requests], ['box', 'box'])
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_spawn_model')
-    rostest.rosrun('rosbots_description', 'spawn_model', SpawnModelTest, sys.argv)

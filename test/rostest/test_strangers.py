@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What strangers once could do to the window, tried again on real servers.
 
 Hundreds of further attempts, at the same page without ROS, are in
@@ -14,10 +13,8 @@ import urllib.request
 from pathlib import Path
 from urllib.parse import urlsplit
 
-import rospy
-import rostest
 from gazebo_msgs.srv import GetWorldProperties
-from programs import memory_of, ran
+from programs import find_program, memory_of, ran
 from server_process import ServerProcess
 from simulator import page_address, proxy
 from terminal import Terminal
@@ -55,7 +52,7 @@ class StrangersTest(unittest.TestCase):
     def setUpClass(cls):
         cls.server = cls.enterClassContext(ServerProcess())
         cls.server.wait_ready()
-        cls.window = Terminal('rosrun', 'gazebo_ros', 'gzweb', '--port', '0')
+        cls.window = Terminal(find_program('gazebo_ros', 'gzweb'), '--port', '0')
         cls.addClassCleanup(cls.window.close)
         cls.address = page_address(cls.window.shown)
         cls.token = cls.address.partition('token=')[2]
@@ -119,7 +116,7 @@ class StrangersTest(unittest.TestCase):
         self.assertNotIn('four', models())
 
     def test_5_unfinished_files_do_not_fill_the_memory(self):
-        process = self.window.process.pid  # rosrun has become the program
+        process = self.window.process.pid
         before = memory_of(process)
         for number in range(MANY):
             self.browser.send(
@@ -173,8 +170,3 @@ class StrangersTest(unittest.TestCase):
             except OSError:
                 continue
             self.assertNotIn(self.token.encode(), line)
-
-
-if __name__ == '__main__':
-    rospy.init_node('strangers', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'strangers', StrangersTest)

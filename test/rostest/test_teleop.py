@@ -1,13 +1,11 @@
-#!/usr/bin/env python3
 """teleop_twist_keyboard.py on a pseudo-terminal: commands that it publishes."""
 
 import signal
-import sys
 import unittest
 
 import rospy
-import rostest
 from geometry_msgs.msg import Twist
+from programs import find_program
 from simulator import DEADLINE, wait_until
 from terminal import Terminal
 
@@ -26,9 +24,7 @@ class TeleopTest(unittest.TestCase):
 
     def _start(self, topic, *arguments):
         self._terminal = Terminal(
-            'rosrun',
-            'teleop_twist_keyboard',
-            'teleop_twist_keyboard.py',
+            find_program('teleop_twist_keyboard', 'teleop_twist_keyboard.py'),
             f'/cmd_vel:={topic}',
             *arguments,
         )
@@ -109,8 +105,3 @@ class TeleopTest(unittest.TestCase):
         self._see('currently:')
         self._press('i', 0.5, 0.0)
         wait_until(lambda: self._commands[-5:] == [(0.5, 0.0)] * 5, 'repetitions')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_teleop')
-    rostest.rosrun('rosbots_description', 'teleop', TeleopTest, sys.argv)

@@ -1,11 +1,9 @@
-#!/usr/bin/env python3
 """The window: quiet, with its own TF topics, and a notice when the simulator ends or returns."""
 
 import os
 import re
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 from contextlib import suppress
@@ -14,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import rosnode
 import rospy
-import rostest
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState, SpawnModel
 from PIL import Image
@@ -196,8 +193,3 @@ class WindowTest(unittest.TestCase):
         # RViz itself may report that time has jumped back
         logged = [line for line in said_by(window) if line.startswith('gzclient:')]
         self.assertEqual(len(logged), 2, window.shown())
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_window', disable_rostime=True)
-    rostest.rosrun('rosbots_description', 'window', WindowTest, sys.argv)
