@@ -88,16 +88,21 @@ def chromium(size: tuple[int, int], *more: str) -> Iterator[webdriver.Chrome]:
         driver = webdriver.Chrome(service=service, options=options)
         stack.callback(driver.quit)
         driver.set_script_timeout(HOPELESS)
-        width, height = size
-        driver.execute_cdp_cmd(
-            'Emulation.setDeviceMetricsOverride',
-            {'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': False},
-        )
+        resize(driver, size)
         driver.execute_cdp_cmd('Page.enable', {})
         driver.execute_cdp_cmd(
             'Page.addScriptToEvaluateOnNewDocument', {'source': f'{{{DRAW_SELDOM}}}'}
         )
         yield driver
+
+
+def resize(driver: webdriver.Chrome, size: tuple[int, int]) -> None:
+    """Give pages another width and height [pixels]."""
+    width, height = size
+    driver.execute_cdp_cmd(
+        'Emulation.setDeviceMetricsOverride',
+        {'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': False},
+    )
 
 
 def picture(driver: webdriver.Chrome) -> Image.Image:

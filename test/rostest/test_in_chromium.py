@@ -10,7 +10,7 @@ import signal
 import sys
 import tempfile
 import unittest
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from time import monotonic
 from urllib.parse import urlsplit
@@ -43,7 +43,7 @@ from rosbots_description.cli.launched import descendants
 
 sys.path.append(str(Path(__file__).resolve().parents[1]))
 sys.path.append(str(Path(__file__).resolve().parents[2] / 'tools'))
-from chromium import chromium, clock, faults, opens_tab, picture
+from chromium import chromium, clock, faults, opens_tab, picture, resize
 from support.similarity import structural_similarity
 
 REFERENCE = Path(__file__).resolve().parents[1] / 'data' / 'web' / 'robot.png'
@@ -241,6 +241,7 @@ class ChromiumTest(unittest.TestCase):
         cls.address = cls.open_window('0')
         cls.prepare()
         cls.open_page()
+        cls.other = cls.enterClassContext(chromium(SIZE))
 
     @classmethod
     def open_window(cls, port):
@@ -252,6 +253,14 @@ class ChromiumTest(unittest.TestCase):
     @classmethod
     def open_page(cls):
         cls.page = Page(cls.enterClassContext(chromium(SIZE)), cls.address)
+
+    @contextmanager
+    def other_page(self, size):
+        """Yield the page as another person's browser shows it, in a window of this size."""
+        resize(self.other, size)
+        yield Page(self.other, self.address)
+        self.assertEqual(faults(self.other), [])
+        self.other.get('about:blank')
 
     @classmethod
     def start_server(cls):
@@ -315,8 +324,7 @@ class ChromiumTest(unittest.TestCase):
     def test_two_pages_have_each_a_selection_and_a_tab_of_their_own(self):
         box = proxy('spawn_urdf_model', SpawnModel)('box', BOX, '', pose(3.0), '')
         self.assertTrue(box.success, box.status_message)
-        with chromium(DESKTOP) as driver:
-            other = Page(driver, self.address)
+        with self.other_page(DESKTOP) as other:
             for page, name in ((self.page, 'rosbots'), (other, 'box')):
                 page.open_tab('Models')
                 page.click(name)
@@ -327,7 +335,6 @@ class ChromiumTest(unittest.TestCase):
             other.press(Keys.DELETE)
             wait_until(lambda: 'box' not in models(), 'a deletion', SLOW)
             self.assertIn('rosbots', models())
-            self.assertEqual(faults(driver), [])
         self.page.press(Keys.DELETE)
         wait_until(lambda: 'rosbots' not in models(), 'a deletion', SLOW)
 
@@ -374,18 +381,16 @@ class ChromiumTest(unittest.TestCase):
         wait_until(lambda: time() == 0.0, 'a reset', SLOW)
 
     def test_chosen_tab_has_two_thirds_of_the_panel(self):
-        with chromium(DESKTOP) as driver:
-            page = Page(driver, self.address)
+        with self.other_page(DESKTOP) as page:
             panel, strip = (
-                driver.find_element(By.CSS_SELECTOR, selector).rect
+                page.driver.find_element(By.CSS_SELECTOR, selector).rect
                 for selector in ('[data-testid=floating-panel]', '[role=tablist]')
             )
             below = panel['y'] + panel['height'] - strip['y'] - strip['height']
             self.assertGreaterEqual(below, 2.0 / 3.0 * panel['height'])
             scene = page.scene().rect
             self.assertLessEqual(scene['x'] + scene['width'], panel['x'])  # not behind it
-            self.assertEqual(driver.title, 'default')
-            self.assertEqual(faults(driver), [])
+            self.assertEqual(page.driver.title, 'default')
 
     def test_long_label_has_one_line_and_keeps_its_end(self):
         publisher = rospy.Publisher(SCANS, LaserScan, queue_size=1)
@@ -405,17 +410,17 @@ class ChromiumTest(unittest.TestCase):
         self.assertEqual(scene.value_of_css_property('opacity'), '1')
 
     def test_phone_shows_the_world_and_a_sheet_that_opens(self):
-        with chromium(PHONE) as driver:
-            page = Page(driver, self.address)
+        with self.other_page(PHONE) as page:
             self.assertEqual([page.scene().rect[side] for side in ('width', 'height')], [*PHONE])
-            sheet = driver.find_element(By.CSS_SELECTOR, '[style*="position: fixed"]:has(.bar)')
+            sheet = page.driver.find_element(
+                By.CSS_SELECTOR, '[style*="position: fixed"]:has(.bar)'
+            )
             wait_until(lambda: sheet.rect['y'] > 0.9 * PHONE[1], 'a closed sheet', SLOW)
             sheet.find_element(By.CSS_SELECTOR, '[style*="cursor: pointer"]').click()
             wait_until(lambda: sheet.rect['y'] < 0.5 * PHONE[1], 'an open sheet', SLOW)
             self.assertEqual(sheet.rect['width'], PHONE[0])
             page.click('Play')
             wait_until(lambda: not is_paused(), 'time', SLOW)
-            self.assertEqual(faults(driver), [])
 
     def test_key_drives_the_robot(self):
         proxy('unpause_physics', Empty)()
