@@ -7,6 +7,7 @@ that is closed, full or without a reader is discarded.
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 import os
 import sys
@@ -36,6 +37,8 @@ def run(main: Callable[[], int]) -> int:
         return main()
     except KeyboardInterrupt:
         return INTERRUPTED
+    finally:
+        gc.freeze()  # else Python looks for unreachable objects in all modules before it ends
 
 
 def say(program: str, sentence: str) -> None:
