@@ -48,7 +48,7 @@ def private_environment() -> Iterator[None]:
     os.environ.update(values)
     _read_environment()
     try:
-        with _patient_start():
+        with _patient_start(), _without_monitors():
             yield
     finally:
         for name, value in before.items():
@@ -67,6 +67,21 @@ def _patient_start() -> contextlib.AbstractContextManager[object]:
 
     untyped: Any = services
     return mock.patch.object(untyped, 'get_node', _waiting(untyped.get_node))
+
+
+def _without_monitors() -> contextlib.AbstractContextManager[object]:
+    """Start Ray without its monitors, which no batch reads; `init` has no switch for them.
+
+    They are the monitor of logs, that of the autoscaler, and the dashboard, of which
+    `include_dashboard=False` leaves the part for statistics. Each is a Python program.
+    """
+    from unittest import mock
+
+    from ray._private import node
+
+    untyped: Any = node
+    monitors = ('start_log_monitor', 'start_monitor', 'start_api_server')
+    return mock.patch.multiple(untyped.Node, **dict.fromkeys(monitors, mock.DEFAULT))
 
 
 def _waiting(get_node: Callable[P, T]) -> Callable[P, T]:

@@ -66,7 +66,8 @@ def scratch(tmp_path_factory, monkeypatch):
         assert list(Path(place).glob('rb*')) == []
 
 
-def test_lost_workers_lose_no_run_but_those_that_always_end_them(tmp_path, capfd):
+def test_lost_workers_lose_no_run_but_those_that_always_end_them(tmp_path, monkeypatch, capfd):
+    monkeypatch.setattr(cluster, 'ATTEMPTS', 3)  # each starts a worker
     expected = run(scenario(tmp_path), workers=0).table.to_pylist()
     ours, addresses = os.getpid(), set()
 

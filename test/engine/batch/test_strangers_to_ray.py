@@ -166,6 +166,8 @@ def test_another_user_reaches_nothing_of_a_batch(place):
         lines = b''.join(Path(f'/proc/{one}/cmdline').read_bytes() for one in family)
         cluster._require_worker(ray)  # nothing has been ended
     assert token.encode() not in lines
+    assert b'monitor.py' not in lines
+    assert b'dashboard.py' not in lines
     assert plan['sockets']
     # Those with the token are answered, so it is calls of Ray that are refused without it.
     assert {tuple(call) for call in said['calls']} == {(call, token) for call in LOOKS}
