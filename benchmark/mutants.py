@@ -27,11 +27,12 @@ from collections import Counter
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from calls import Function, Record
 from forked_tests import import_others, record, run_tests
-from mutation import changed_line, mutant, parts, place_of, places, statements
+from mutation import Part, changed_line, mutant, parts, place_of, places, statements
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / 'tools'))
 from changed import dependencies, test_files
@@ -78,9 +79,6 @@ class Tests:
         self.broken = {name for name, record in records.items() if record.failed}
         self._records = records
         self._imported = imported
-        self._parts = [
-            part for path in files(['.']) for part in parts(path, ast.parse(path.read_bytes()))
-        ]
         self._sound: set[str] = set()  # tests that pass without any change when they run alone
 
     def of(self, one: Mutant) -> tuple[list[str], list[str]]:
@@ -106,6 +104,10 @@ class Tests:
             return name not in named, self._records[name].seconds
 
         return sorted(own, key=order), sorted(found - own, key=order)
+
+    @cached_property
+    def _parts(self) -> list[Part]:
+        return [part for path in files(['.']) for part in parts(path, ast.parse(path.read_bytes()))]
 
     def _readers(self, names: frozenset[str]) -> set[Function]:
         """Return the functions that read one of these names, or what is computed of them."""
