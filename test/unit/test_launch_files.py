@@ -40,6 +40,19 @@ def built(tmp_path):
     return tmp_path / 'built'
 
 
+run_command = XmlLoader.param_value
+EXPANDED = {}  # descriptions, by what they are read from
+
+
+def param_value(loader, verbose, name, ptype, *source):
+    """Return the value of a parameter; xacro runs once for each of its commands in all tests."""
+    if not name.endswith('_description'):
+        return run_command(loader, verbose, name, ptype, *source)
+    if source not in EXPANDED:
+        EXPANDED[source] = run_command(loader, verbose, name, ptype, *source)
+    return EXPANDED[source]
+
+
 @pytest.fixture
 def load(monkeypatch, built):
     """Return a function (file name in launch/ or path, arguments) -> ROSLaunchConfig."""
@@ -55,6 +68,7 @@ def load(monkeypatch, built):
     monkeypatch.setenv('PATH', os.pathsep.join([interpreter, os.environ['PATH']]))
     monkeypatch.setattr('roslaunch.substitution_args._rospack', None)  # it caches the path
     monkeypatch.setenv('ROS_MASTER_URI', 'http://localhost:1')
+    monkeypatch.setattr(XmlLoader, 'param_value', param_value)
 
     def load_file(path, *arguments):
         config = ROSLaunchConfig()
