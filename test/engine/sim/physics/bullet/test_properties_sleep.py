@@ -79,7 +79,7 @@ def ending(seed, tuning, variant=0):
 
 
 @given(SEEDS)
-@settings(max_examples=settings.default.max_examples // 2)
+@settings(max_examples=settings.default.max_examples // 4)
 def test_a_random_scene_ends_as_without_sleep(seed):
     asleep, awake = ending(seed, None), ending(seed, AWAKE)
     far = [name for name, place in awake.items() if math.dist(asleep[name], place) > NEAR]
