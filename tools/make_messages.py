@@ -2,7 +2,7 @@
 
 catkin starts three for each message, which take most of the time of the set-up.
 
-usage: make_messages.py COMPANIONS MODULES [HEADERS [PACKAGE]]
+usage: make_messages.py COMPANIONS MODULES [PACKAGE [HEADERS]]
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ACTION = {
 
 
 def main(
-    companions: Path, modules: Path, headers: Path | None = None, package: str = '*_msgs'
+    companions: Path, modules: Path, package: str = '*_msgs', headers: Path | None = None
 ) -> int:
     """Write MODULES/PACKAGE/{msg,srv} and, if given, HEADERS/PACKAGE; return the exit code."""
     with tempfile.TemporaryDirectory() as folder:
@@ -88,4 +88,4 @@ def _write_headers(
 
 
 if __name__ == '__main__':
-    sys.exit(main(*map(Path, sys.argv[1:4]), *sys.argv[4:]))  # type: ignore[arg-type]
+    sys.exit(main(*map(Path, sys.argv[1:3]), *sys.argv[3:4], *map(Path, sys.argv[4:])))  # type: ignore[arg-type]
