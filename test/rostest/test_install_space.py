@@ -24,7 +24,7 @@ class InstallSpaceTest(unittest.TestCase):
     def setUpClass(cls):
         cls.root = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         subprocess.run(
-            ['make', '-C', str(BUILD), 'install'],
+            ['cmake', '--install', str(BUILD)],  # ./rosbots setup has built everything
             env={**os.environ, 'DESTDIR': str(cls.root)},
             stdout=subprocess.DEVNULL,
             check=True,
