@@ -167,6 +167,7 @@ def public_names(room):
     return set()
 
 
+@cache
 def imported_packages(tree):
     """Return the external packages that a module imports, within functions too."""
     names = set()
