@@ -9,12 +9,16 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest.mock import patch
 
 import debian_rviz
 import readme
+import rosnode
+import rospy
 import rostest
+from gazebo_msgs.srv import GetModelState
 from programs import ran_merged
-from simulator import BOX, free_port, wait_until
+from simulator import BOX, free_port, proxy, wait_until
 from terminal import Terminal, open_display
 
 sys.path.insert(0, str(readme.ROOT / 'test'))
@@ -168,19 +172,20 @@ class OwnPackageTest(unittest.TestCase):
         self.assertEqual(type_sourced(f'{STEPS[1][0]}; pwd').strip(), str(self.package))
         # 2: the user's robot in RViz, from `cat`
         port = free_port()
-        self.reader.environment['ROS_MASTER_URI'] = f'http://localhost:{port}'
+        master = {'ROS_MASTER_URI': f'http://localhost:{port}'}
+        self.reader.environment.update(master)
+        self.enterContext(patch.dict(os.environ, master))  # of this process as well
         walk.see(walk.open(f'{STEPS[2][0]} -p {port}'), 'started core service')
         view = self._open_rviz(walk)
-        self.assertIn('/rviz', type_sourced('rostopic info /tf'))
-        self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
+        self.assertIn(THEIR_LINK, rospy.get_param('/robot_description'))
         # 5: the spawn of the user's robot, from xacro.py, waits for a simulator
         early = walk.open(spawn)
         walk.see(early, 'Waiting for service /gazebo/spawn_urdf_model')
         # 3: the simulator, with world and window
         walk.open(STEPS[3][0])
         walk.see(early, SPAWNED)
-        self.assertIn(THEIR_LINK, type_sourced('rosparam get /robot_description'))
-        wait_until(lambda: '/gazebo_gui' in type_sourced('rosnode list'), 'the window', STEP)
+        self.assertIn(THEIR_LINK, rospy.get_param('/robot_description'))
+        wait_until(lambda: '/gazebo_gui' in rosnode.get_node_names(), 'the window', STEP)
         # 6: the robot is deleted
         self.assertIn('success: True', type_sourced(delete))
         self.assertNotIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
@@ -189,10 +194,16 @@ class OwnPackageTest(unittest.TestCase):
         self.assertIn('/part2_cmr/cmd_vel', type_sourced(topics).split())
         # 8: it is driven
         # With the key held, however slow the machine is.
-        start, teleop = self._x(), walk.open(f'{STEPS[8][0]} _key_timeout:=0')
+        state = proxy('get_model_state', GetModelState)
+        start = state('rosbots', '').pose.position.x
+        teleop = walk.open(f'{STEPS[8][0]} _key_timeout:=0')
         walk.see(teleop, 'currently:')
         walk.keys(teleop, 'i')
-        wait_until(lambda: self._x() > start + MOVED, 'motion of the robot', STEP)
+        wait_until(
+            lambda: state('rosbots', '').pose.position.x > start + MOVED,
+            'motion of the robot',
+            STEP,
+        )
         walk.keys(teleop, '\x03')
         # any other robot: the simulator is running
         (self.reader.home / 'my_robot.urdf').write_text(BOX, encoding='utf-8')
@@ -203,26 +214,13 @@ class OwnPackageTest(unittest.TestCase):
     def _open_rviz(self, walk, starts=debian_rviz.STARTS):
         """Show the user's robot in RViz, before any program of ours runs."""
         view = walk.open(STEPS[2][1])
-        wait_until(lambda: self._rviz_is_ready() or not walk.runs(view), 'RViz', STEP)
+        wait_until(lambda: debian_rviz.is_ready() or not walk.runs(view), 'RViz', STEP)
         if walk.runs(view):
             return view
         self.assertRegex(walk.shown(view), debian_rviz.CRASH)
         self.assertGreater(starts, 1, walk.shown(view))
         walk.close(view)
         return self._open_rviz(walk, starts - 1)
-
-    def _rviz_is_ready(self):
-        """Return whether RViz offers the first service after its window."""
-        answer = self.reader.type_sourced(
-            f'rosservice type {debian_rviz.READY_SERVICE} 2>&1 || true'
-        )
-        return answer.startswith('std_srvs/')
-
-    def _x(self):
-        state = self.reader.type_sourced(
-            "rosservice call /gazebo/get_model_state '{model_name: rosbots}'"
-        )
-        return float(re.search(r'x: (\S+)', state)[1])
 
     def test_every_form_of_a_launch_file_expands_the_users_robot(self):
         for name, form in (
