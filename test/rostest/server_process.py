@@ -56,7 +56,7 @@ class ServerProcess:
         self.process.stdout.close()
 
     def wait_ready(self):
-        """Wait until the last service is registered."""
+        """Wait until the last service of gazebo_ros is registered."""
         wait_until(self._is_ready, f'the services of /{self.name}', deadline=2 * DEADLINE)
         return self
 
@@ -64,7 +64,9 @@ class ServerProcess:
         if self.process.poll() is not None:
             raise AssertionError(f'the server has ended: {self.process.stdout.read()}')
         try:
-            rosgraph.Master('/test', self.master).lookupService(f'/{self.name}/unpause_physics')
+            rosgraph.Master('/test', self.master).lookupService(
+                f'/{self.name}/get_world_properties'
+            )
         except rosgraph.MasterError:
             return False
         return True
