@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import rosgraph
-from gazebo_msgs.srv import GetWorldProperties
+from gazebo_msgs.srv import GetWorldProperties, SpawnModel
 from programs import end, find_program, keep
 from raw_client import answer, request_bytes, service_connection
-from simulator import DEADLINE, SimulatorTest, free_port, wait_until
+from simulator import DEADLINE, SimulatorTest, free_port, pose, wait_until
 
 
 class ServerProcess:
@@ -81,12 +81,9 @@ class ServerProcess:
         return self.call('get_world_properties', GetWorldProperties)
 
     def spawn(self, name, xml):
-        """Spawn a model by spawn_model with this server's master."""
-        with ServerProcess(
-            '-urdf', '-stdin', '-model', name, program='spawn_model', master=self.master
-        ) as client:
-            printed, _ = client.process.communicate(xml, timeout=2 * DEADLINE)
-        assert client.process.returncode == 0, printed
+        """Spawn a model at the origin."""
+        made = self.call('spawn_urdf_model', SpawnModel, name, xml, '/', pose(z=0.0), '')
+        assert made.success, made.status_message
 
     def open_files(self):
         """Return the number of open file descriptors, connections included."""
