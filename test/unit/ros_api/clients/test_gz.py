@@ -8,6 +8,7 @@ import pytest
 from gazebo_msgs.msg import ODEPhysics
 from gazebo_msgs.srv import GetPhysicsPropertiesResponse
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+from support.programs import python
 
 from rosbots_description.cli.gz import parser
 from rosbots_description.ros_api.clients import gz, service_program
@@ -190,3 +191,11 @@ def test_names_of_models_do_nothing_to_the_terminal(monkeypatch, capsys, fails):
     assert (printed, said) == (
         ('', f'gz model: {escaped}\n') if fails else (f'a{escaped}\n\tb\n', '')
     )
+
+
+def test_import_loads_no_simulator():
+    ended = python(
+        'import sys; import rosbots_description.ros_api.clients.gz; '
+        "print(*(name for name in sys.modules if name.endswith(('pybullet', '.sim.runtime'))))"
+    )
+    assert (ended.stdout.strip(), ended.stderr) == ('', '')
