@@ -22,7 +22,7 @@ from results import (
 )
 
 FOLDER = ROOT / 'test' / 'rostest'
-LANES = 2 + (os.cpu_count() or 1)  # a third of their time they wait for simulated time
+LANES = 3 + (os.cpu_count() or 1)  # half of their time they wait for simulated time
 # Begun first, the longest first, so that the lanes end together.
 LONGEST = (
     'own_package',

@@ -3,8 +3,8 @@
 
 Phases: first rostest (each test/rostest/*.test with its own master, several side by side); then,
 side by side, lint (ruff, mypy, the documentation's site, catkin_lint, launch files), unit (pytest,
-no ROS master) and engine (pytest, PyBullet without a window), each of the latter two with a process
-for each processor. A phase without any test counts as failed. What failed is listed at the end with
+no ROS master) and engine (pytest, PyBullet without a window), each of the latter two in several
+processes. A phase without any test counts as failed. What failed is listed at the end with
 the command that repeats it.
 """
 
@@ -42,7 +42,8 @@ from results import (
 from rostests import choose, run_rostests
 
 SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
-PARALLEL = ['-n', str(os.cpu_count() or 1), '--dist', 'loadfile']  # a file stays in one process
+# One process more than processors, as some tests wait; a file stays in one process.
+PARALLEL = ['-n', str(1 + (os.cpu_count() or 1)), '--dist', 'loadfile']
 NAVIGATION = ROOT / '.ws' / 'stamps' / 'navigation'  # when ./rosbots navigation has built it
 HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
