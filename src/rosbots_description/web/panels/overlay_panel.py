@@ -39,10 +39,11 @@ class OverlayPanel(Panel):
 
     def apply(self, change: SceneChange) -> None:
         """Show it of models that came or changed."""
-        for name in list(self._shown) if change.reset else change.removed:
-            self._erase(name)
-        for model in change.models:
-            self._draw(model)
+        with self._client.atomic():  # no mark is seen before it is in its place
+            for name in list(self._shown) if change.reset else change.removed:
+                self._erase(name)
+            for model in change.models:
+                self._draw(model)
 
     def _select(self) -> None:
         if self._only.value:

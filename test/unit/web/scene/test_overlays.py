@@ -1,6 +1,7 @@
 """Overlays of links, contacts, how visuals are drawn, and cameras that follow."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -74,14 +75,26 @@ def test_models_that_come_or_change_get_it_too(browser, simulator):
     browser.choose('Centres of mass', True)
     simulator.change(SceneChange(True, (ROBOT,)))
     ball = '/models/robot/arm/Centres of mass'
-    browser.wait_until(lambda: ball in browser.nodes)
-    assert browser.nodes[ball][1] == [0.0, 0.0, 0.5]
+    browser.wait_until(lambda: browser.nodes[ball][1] == [0.0, 0.0, 0.5])
     moved = ShownLink(5, 'arm', Pose(), inertial=Inertial(2.0, Pose((0.25, 0.0, 0.0))))
     simulator.change(SceneChange(models=(ShownModel('robot', (moved,)),), removed=('robot',)))
     browser.wait_until(lambda: browser.nodes.get(ball, [0, 0])[1] == [0.25, 0.0, 0.0])
     static = ShownModel('robot', (moved,), static=True)
     simulator.change(SceneChange(models=(static,), removed=('robot',)))
     browser.wait_until(lambda: ball not in browser.nodes)
+
+
+def test_a_mark_is_not_seen_before_it_is_in_its_place(browser, simulator, monkeypatch):
+    def slow(scene, path, _model, _link):
+        mark = scene.add_frame(path)
+        time.sleep(0.2)  # of viser, which sends sixty times a second
+        mark.position = (1.0, 2.0, 3.0)
+
+    monkeypatch.setitem(OVERLAYS, 'Frames', slow)
+    browser.choose('Frames', True)
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    browser.wait_until(lambda: '/models/a/link/Frames' in browser.nodes)
+    assert browser.nodes['/models/a/link/Frames'][1] == [1.0, 2.0, 3.0]
 
 
 def test_only_what_is_selected_is_marked_if_that_is_asked_for(browser, simulator, page):
