@@ -258,9 +258,11 @@ class ChromiumTest(unittest.TestCase):
     def other_page(self, size):
         """Yield the page as another person's browser shows it, in a window of this size."""
         resize(self.other, size)
-        yield Page(self.other, self.address)
-        self.assertEqual(faults(self.other), [])
-        self.other.get('about:blank')
+        try:
+            yield Page(self.other, self.address)
+            self.assertEqual(faults(self.other), [])
+        finally:
+            self.other.get('about:blank')  # nobody else looks at the next tests
 
     @classmethod
     def start_server(cls):
