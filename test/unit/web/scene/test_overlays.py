@@ -1,7 +1,6 @@
 """Overlays of links, contacts, how visuals are drawn, and cameras that follow."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -85,16 +84,19 @@ def test_models_that_come_or_change_get_it_too(browser, simulator):
 
 
 def test_a_mark_is_not_seen_before_it_is_in_its_place(browser, simulator, monkeypatch):
+    simulator.change(SceneChange(True, (model('a', 1),)))
+    browser.choose('Frames', True)
+    browser.wait_until(lambda: '/models/a/link/Frames' in browser.nodes)
+
     def slow(scene, path, _model, _link):
         mark = scene.add_frame(path)
-        time.sleep(0.2)  # of viser, which sends sixty times a second
+        browser.read(0.2)  # all that viser sends meanwhile, sixty times a second
         mark.position = (1.0, 2.0, 3.0)
 
     monkeypatch.setitem(OVERLAYS, 'Frames', slow)
-    browser.choose('Frames', True)
-    simulator.change(SceneChange(True, (model('a', 1),)))
-    browser.wait_until(lambda: '/models/a/link/Frames' in browser.nodes)
-    assert browser.nodes['/models/a/link/Frames'][1] == [1.0, 2.0, 3.0]
+    simulator.change(SceneChange(models=(model('b', 2),)))
+    browser.wait_until(lambda: '/models/b/link/Frames' in browser.nodes)
+    assert browser.nodes['/models/b/link/Frames'][1] == [1.0, 2.0, 3.0]
 
 
 def test_only_what_is_selected_is_marked_if_that_is_asked_for(browser, simulator, page):
