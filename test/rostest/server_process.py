@@ -36,7 +36,7 @@ class ServerProcess:
         self.process = subprocess.Popen(
             [*prefix, find_program(package, program), *arguments],
             env=self.environment,
-            stdin=subprocess.PIPE,
+            stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -48,7 +48,6 @@ class ServerProcess:
 
     def __exit__(self, *_):
         end(self.process)
-        self.process.stdin.close()
         if not self.process.stdout.closed:
             os.set_blocking(self.process.stdout.fileno(), False)  # its children may have it open
             with contextlib.suppress(BlockingIOError, TypeError):
