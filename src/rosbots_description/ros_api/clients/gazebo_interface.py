@@ -68,7 +68,7 @@ def _call(service: str, service_class: type[Any], *request: object) -> Message |
     try:
         return interruptibly(lambda: rospy.ServiceProxy(service, service_class)(*request))
     except rospy.ServiceException as error:
-        if rospy.is_shutdown():
+        if rospy.core.is_shutdown_requested():
             raise rospy.ROSInterruptException('shut down during the call') from error
         rospy.logerr('Service call failed: %s', error)
         return None

@@ -61,7 +61,7 @@ def own_parameters(defaults: Mapping[str, Any]) -> dict[str, Any]:
 
 def is_running() -> bool:
     """Tell whether the node is not shutting down."""
-    return not rospy.is_shutdown()
+    return not rospy.core.is_shutdown_requested()  # before topics and services are closed
 
 
 def _shut_down(number: int, _frame: FrameType | None) -> None:

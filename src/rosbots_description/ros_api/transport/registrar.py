@@ -53,7 +53,9 @@ class Registrar:
             try:
                 job()
             except Exception:
-                if rospy.is_shutdown():  # topics are closed, and nothing is to be registered
+                if (
+                    rospy.core.is_shutdown_requested()
+                ):  # topics are closed, nothing is to be registered
                     return
                 logger.exception('a registration with the ROS master failed')
 

@@ -61,7 +61,7 @@ def threads():
 
 @pytest.mark.parametrize('ends', [True, False])
 def test_a_failure_is_an_error_unless_the_node_ends(monkeypatch, caplog, ends):
-    monkeypatch.setattr(registrar.rospy, 'is_shutdown', lambda: ends)
+    monkeypatch.setattr(rospy.core, 'is_shutdown_requested', lambda: ends)
     before = threads()
     one, failed = Registrar(), threading.Event()
 
