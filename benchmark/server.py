@@ -224,7 +224,7 @@ def wait_until(condition: Callable[[], object], what: str) -> None:
     while not condition():
         if time.monotonic() > end:
             raise TimeoutError(f'not within {PATIENCE:g} s: {what}')
-        time.sleep(0.002)
+        time.sleep(0.01)
 
 
 def free_port() -> int:

@@ -40,7 +40,7 @@ def wait_until(condition, what, deadline=DEADLINE):
         now = time.monotonic()
         if now > end:
             raise AssertionError(f'not within {deadline:g} s: {what}')
-        time.sleep(min(max(0.005, 2.0 * (now - began)), 1.0))
+        time.sleep(min(max(0.02, 2.0 * (now - began)), 1.0))
 
 
 def free_port():

@@ -10,4 +10,4 @@ def wait_until(condition, what='the condition', patience=PATIENCE):
     end = time.monotonic() + patience
     while not condition():
         assert time.monotonic() < end, f'not within {patience:g} s: {what}'
-        time.sleep(0.002)
+        time.sleep(0.01)
