@@ -53,9 +53,7 @@ class Registrar:
             try:
                 job()
             except Exception:
-                if (
-                    rospy.core.is_shutdown_requested()
-                ):  # topics are closed, nothing is to be registered
+                if rospy.core.is_shutdown_requested():  # topics are closed, or about to be
                     return
                 logger.exception('a registration with the ROS master failed')
 
