@@ -18,6 +18,8 @@ from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
 from genpy import Message
 from geometry_msgs.msg import Pose
 
+from ..transport import is_running
+
 _POLL = 0.05  # [s] wall time between polls of the shutdown flag
 
 Result = TypeVar('Result')
@@ -68,7 +70,7 @@ def _call(service: str, service_class: type[Any], *request: object) -> Message |
     try:
         return interruptibly(lambda: rospy.ServiceProxy(service, service_class)(*request))
     except rospy.ServiceException as error:
-        if rospy.core.is_shutdown_requested():
+        if not is_running():
             raise rospy.ROSInterruptException('shut down during the call') from error
         rospy.logerr('Service call failed: %s', error)
         return None
