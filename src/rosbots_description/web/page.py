@@ -64,7 +64,7 @@ class Page:
         history = History(site.gui, self._notify)
         clock = Clock(site.gui)
         scene = SceneView(site, self._click)
-        self._ground = Ground(site, models)
+        self._ground = Ground(models)
         polled = Polled(simulator)
         self._panels: list[Panel] = [
             models,
@@ -208,7 +208,7 @@ class Page:
             camera.position, camera.look_at = self._start.choose()
         for client in self._new:
             eye, target = self._start.choose(client.camera.aspect)
-            self._ground.expect(client, eye, target)
+            self._ground.watch(client, eye, target)
             with client.atomic():
                 look(client.camera, eye, target)
         self._new.clear()

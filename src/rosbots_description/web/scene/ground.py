@@ -1,5 +1,6 @@
 """Keeps the cameras of browsers above the ground."""
 
+import threading
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -20,18 +21,20 @@ TOLERANCE = 1e-3  # [m] of an eye that was put there: browsers round
 class Ground(Panel):
     """Lifts a camera that its browser has moved below the lowest ground, if there is one."""
 
-    def __init__(self, site: viser.ViserServer, models: Models) -> None:
+    def __init__(self, models: Models) -> None:
         self._models = models
         self._lowest: float | None = None  # height of an eye [m]
         # First views that browsers have not reported yet: eye and target [m].
         self._expected: WeakKeyDictionary[viser.ClientHandle, tuple[Vector, Vector]] = (
             WeakKeyDictionary()
         )
-        site.on_client_connect(self._watch)
+        self._lock = threading.Lock()  # viser reports several views at once, in threads
 
-    def expect(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
-        """Take in the first view that a browser was told; what it reports before is not its own."""
-        self._expected[client] = eye, target
+    def watch(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
+        """Watch a browser from its first view on; what it reports before is not its own."""
+        with self._lock:
+            self._expected[client] = eye, target
+        client.camera.on_update(self._lift)
 
     def apply(self, _change: SceneChange) -> None:
         """Look for grounds: planes that face upwards."""
@@ -45,10 +48,11 @@ class Ground(Panel):
                             heights.append(pose.position[2])
         self._lowest = min(heights) + CLEARANCE if heights else None
 
-    def _watch(self, client: viser.ClientHandle) -> None:
-        client.camera.on_update(self._lift)
-
     def _lift(self, camera: viser.CameraHandle) -> None:
+        with self._lock:  # else an old report, looked at late, would move it from a newer view
+            self._lift_now(camera)
+
+    def _lift_now(self, camera: viser.CameraHandle) -> None:
         x, y, z = map(float, camera.position)
         lowest = self._lowest
         is_below = lowest is not None and z < lowest - TOLERANCE

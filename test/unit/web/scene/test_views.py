@@ -142,3 +142,17 @@ def test_a_report_from_before_the_first_view_is_no_reason_to_leave_it(browser, s
     browser.wait_until(lambda: not page._ground._expected)
     eye, _ = turned(browser, page, lambda: report(browser, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0)))
     assert eye == pytest.approx([1.0, 2.0, 1.0 + CLEARANCE])
+
+
+def test_who_comes_below_the_ground_is_told_nothing_but_the_first_view(looking, page, site):
+    first, _ = page._start.choose()
+    with Browser(site.address) as other:
+        with page._lock:  # it is told late
+            other.wait_until(lambda: len(site.get_clients()) == 2)
+            client = site.get_clients()[max(site.get_clients())]
+            report(other, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0))
+            other.wait_until(lambda: client.camera.position[2] == -3.0)
+        other.wait_until(lambda: other.received('SetCameraLookAtMessage'))
+        catch_up(other, page, 'told')
+        told = [m for m in other.received('SetCameraPositionMessage') if not m['initial']]
+        assert [m['position'] for m in told] == [pytest.approx(first)]
