@@ -67,8 +67,9 @@ WORLD = f"""<sdf version="1.6"><world name="default">
   </camera></gui>
 </world></sdf>"""
 SCENE = 'canvas[data-engine]'  # by three.js
-# The picture is of the scene only, and of as many pixels however slow the processor is.
-QUERY = '&fixedDpr=1'
+# The picture is of the scene only, and of as many pixels however slow the processor is. The console
+# tells where the page looks from.
+QUERY = '&fixedDpr=1&logCamera'
 SCENE_ONLY = """const style = document.createElement('style');
 style.textContent = 'body *:not(canvas):not(:has(canvas)) { visibility: hidden !important }';
 document.head.append(style)"""
@@ -351,9 +352,10 @@ class ChromiumTest(unittest.TestCase):
         try:
             wait_until(is_alike, f'a picture that is like the reference by {ALIKE}', SLOW)
         except AssertionError:
-            Image.fromarray(seen[0].astype(np.uint8)).save(
-                Path(os.environ['ROS_LOG_DIR'], 'unlike.png')
-            )
+            unlike = Path(os.environ['ROS_LOG_DIR'], 'unlike.png')
+            Image.fromarray(seen[0].astype(np.uint8)).save(unlike)
+            said = [entry['message'] for entry in page.driver.get_log('browser')]
+            unlike.with_name('unlike_console.txt').write_text('\n'.join(said))
             raise
 
     def addresses(self, log):
