@@ -31,7 +31,12 @@ class Ground(Panel):
         self._lock = threading.Lock()  # viser reports several views at once, in threads
 
     def watch(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
-        """Watch a browser from its first view on; what it reports before is not its own."""
+        """Watch a browser from its first view on; what it reports before is not its own.
+
+        Args:
+            client: the browser.
+            eye, target: of the view that it is told now, in the world [m].
+        """
         with self._lock:
             self._expected[client] = eye, target
         client.camera.on_update(self._lift)
@@ -50,22 +55,19 @@ class Ground(Panel):
 
     def _lift(self, camera: viser.CameraHandle) -> None:
         with self._lock:  # else an old report, looked at late, would move it from a newer view
-            self._lift_now(camera)
-
-    def _lift_now(self, camera: viser.CameraHandle) -> None:
-        x, y, z = map(float, camera.position)
-        lowest = self._lowest
-        is_below = lowest is not None and z < lowest - TOLERANCE
-        first = self._expected.get(camera.client)
-        if first is not None:
-            if np.allclose(camera.position, first[0], atol=NEAR):
-                self._expected.pop(camera.client, None)
-            elif is_below:
+            x, y, z = map(float, camera.position)
+            lowest = self._lowest
+            is_below = lowest is not None and z < lowest - TOLERANCE
+            first = self._expected.get(camera.client)
+            if first is not None:
+                if np.allclose(camera.position, first[0], atol=NEAR):
+                    self._expected.pop(camera.client, None)
+                elif is_below:
+                    with camera.client.atomic():
+                        look(camera, *first)
+            elif lowest is not None and is_below:
+                tx, ty, tz = map(float, camera.look_at)
+                if (tx, ty) == (x, y):
+                    tz = lowest - 1.0  # straight ahead would be nowhere
                 with camera.client.atomic():
-                    look(camera, *first)
-        elif lowest is not None and is_below:
-            tx, ty, tz = map(float, camera.look_at)
-            if (tx, ty) == (x, y):
-                tz = lowest - 1.0  # straight ahead would be nowhere
-            with camera.client.atomic():
-                look(camera, (x, y, lowest), (tx, ty, tz))
+                    look(camera, (x, y, lowest), (tx, ty, tz))
