@@ -51,7 +51,7 @@ def interruptibly(function: Callable[[], Result], timeout: float = math.inf) -> 
     while not wait((outcome,), _POLL).done:
         if time.monotonic() > give_up:
             raise rospy.ROSException(f'no answer within {timeout} s')
-        if rospy.is_shutdown():
+        if rospy.is_shutdown():  # not `is_running`: what is called on shutdown is awaited, too
             raise rospy.ROSInterruptException('shut down while waiting')
     return outcome.result()
 
