@@ -43,7 +43,7 @@ from rosbots_description.cli.launched import descendants
 
 ROBOTS, CLIENTS = 20, 3
 GROWTH = 10.0  # [MB] allowed growth of the server's memory after the warm-up
-WARM_UP = 0.1, 15.0  # share of the duration, and minimum [s, wall]; all calls were made by then
+WARM_UP = 0.1, 5.0  # share of the duration, and minimum [s, wall]; all calls were made by then
 SLACK = 3  # descriptors and threads that may remain beside those before
 BACK_TO = 5.0  # [s, simulated] latest time at which a reset is noticed
 # Log lines about requests that are meant to fail, and about killed clients.

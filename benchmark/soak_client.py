@@ -31,7 +31,7 @@ from std_srvs.srv import Empty
 
 VICTIM = 'victim'  # prefix of models of killed clients
 MOST_MODELS = 3  # of one client at a time
-PAUSE = (0.01, 0.2)  # between two actions, and of physics [s, wall]
+PAUSE = (0.01, 0.1)  # between two actions, and of physics [s, wall]
 LISTEN = (0.1, 1.0)  # duration of a subscription [s, wall]
 FIELD = 60.0  # side of the square in which models are placed [m]
 BOX = """<robot name="box"><link name="body">
@@ -63,7 +63,7 @@ class Report:
 
 
 class Client:
-    """Makes random calls, one after the other."""
+    """Makes random calls, one after the other, and each of them once before any again."""
 
     def __init__(self, seed: int, robots: list[str], name: str, cleans_up: bool = False) -> None:
         """Begin without models.
@@ -104,10 +104,14 @@ class Client:
         }
         if cleans_up:
             self._actions[self.delete_leftovers] = 20
+        self._not_done = self._random.sample(list(self._actions), len(self._actions))
 
     def act(self) -> None:
         """Do one random action and record a failure."""
-        (action,) = self._random.choices(list(self._actions), list(self._actions.values()))
+        if self._not_done:
+            action = self._not_done.pop()
+        else:
+            (action,) = self._random.choices(list(self._actions), list(self._actions.values()))
         self.report.done[action.__name__] += 1
         try:
             action()
