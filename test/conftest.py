@@ -59,8 +59,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Let the garbage collector leave alone what stays until the end: modules and tests."""
+    """Let the garbage collector leave alone what stays until the end, and look seldom for more."""
     gc.freeze()
+    gc.set_threshold(20_000)
     gc.enable()
 
 

@@ -42,8 +42,9 @@ from results import (
 from rostests import choose, run_rostests
 
 SUMMARY = REPORTS / 'summary.json'  # for repeat_tests.py
-# One process more than processors, as some tests wait; a file stays in one process.
-PARALLEL = ['-n', str(1 + (os.cpu_count() or 1)), '--dist', 'loadfile']
+# Two phases run at once, so more processes would only compete for the processors' caches.
+# A file stays in one process.
+PARALLEL = ['-n', str(os.cpu_count() or 1), '--dist', 'loadfile']
 NAVIGATION = ROOT / '.ws' / 'stamps' / 'navigation'  # when ./rosbots navigation has built it
 HOPELESS = 900  # [s, wall] after which a test fails that stands still; it shows all stacks
 
