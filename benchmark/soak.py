@@ -43,7 +43,7 @@ from rosbots_description.cli.launched import descendants
 
 ROBOTS, CLIENTS = 20, 3
 GROWTH = 10.0  # [MB] allowed growth of the server's memory after the warm-up
-WARM_UP = 0.1, 5.0  # share of the duration, and minimum [s, wall]; all calls were made by then
+WARM_UP = 0.1  # share of the duration; all calls were made before
 SLACK = 3  # descriptors and threads that may remain beside those before
 BACK_TO = 5.0  # [s, simulated] latest time at which a reset is noticed
 # Log lines about requests that are meant to fail, and about killed clients.
@@ -176,7 +176,7 @@ class Clients:
             self._pipes.append(ours)
             self._processes.append(process)
         for pipe in self._pipes:
-            _received(pipe)  # each reports when it is ready
+            _received(pipe)  # each reports when it is ready; one that crashed is noticed at the end
 
     def end(self) -> list[Report | None]:
         """End them; return the report of each, None for one that crashed."""
@@ -241,7 +241,7 @@ class Soak:
 
 
 def soak(server: Server, seconds: float, seed: int) -> Soak:
-    """Run the soak test on a server for `seconds` [wall]."""
+    """Run the soak test on a server for `seconds` [wall] after its clients are ready."""
     robots = [f'robot{i}' for i in range(ROBOTS)]
     for _ in robots:
         server.spawn()
@@ -252,7 +252,7 @@ def soak(server: Server, seconds: float, seed: int) -> Soak:
     server.wait_simulated(1.0)
     start, clients = usage(server), Clients(seed, robots)
     end = time.monotonic() + seconds
-    time.sleep(max(WARM_UP[0] * seconds, WARM_UP[1]))
+    time.sleep(WARM_UP * seconds)
     warm = usage(server)
     while time.monotonic() < end:
         try:

@@ -63,7 +63,7 @@ class Report:
 
 
 class Client:
-    """Makes random calls, one after the other, and each of them once before any again."""
+    """Makes random calls, one after the other."""
 
     def __init__(self, seed: int, robots: list[str], name: str, cleans_up: bool = False) -> None:
         """Begin without models.
@@ -104,14 +104,19 @@ class Client:
         }
         if cleans_up:
             self._actions[self.delete_leftovers] = 20
-        self._not_done = self._random.sample(list(self._actions), len(self._actions))
+
+    def act_once_each(self) -> None:
+        """Do each action once, in random order."""
+        for action in self._random.sample(list(self._actions), len(self._actions)):
+            self._do(action)
 
     def act(self) -> None:
-        """Do one random action and record a failure."""
-        if self._not_done:
-            action = self._not_done.pop()
-        else:
-            (action,) = self._random.choices(list(self._actions), list(self._actions.values()))
+        """Do one random action."""
+        (action,) = self._random.choices(list(self._actions), list(self._actions.values()))
+        self._do(action)
+
+    def _do(self, action: Callable[[], None]) -> None:
+        """Do an action, and record a failure."""
         self.report.done[action.__name__] += 1
         try:
             action()
@@ -311,10 +316,14 @@ class Client:
 
 
 def serve(number: int, seed: int, robots: list[str], over: Event, reports: Connection) -> None:
-    """Run a client until `over` is set; the entry point of its process."""
+    """Run a client until `over` is set; the entry point of its process.
+
+    It is ready when it has made all calls, so that none is new to the server from then on.
+    """
     name = f'client{number}'
     _begin(name)
     client = Client(seed, robots, name, cleans_up=number == 0)
+    client.act_once_each()
     reports.send('ready')
     while not over.is_set():
         client.act()
