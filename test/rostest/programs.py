@@ -6,6 +6,8 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+import rosgraph
+import rosnode
 from roslib.packages import find_node
 
 HOPELESS = 60.0  # [s, wall] for a program that was told to end
@@ -53,6 +55,16 @@ def end(process):
             process.wait(HOPELESS)
         process.kill()
     process.wait()
+
+
+def kill_node(process, name):
+    """Kill a node, like a crash, and remove it from the ROS master, as `rosnode cleanup` does.
+
+    The master would go on to call its address, perhaps that of a node of another test by then.
+    """
+    process.kill()
+    process.wait()
+    rosnode.cleanup_master_blacklist(rosgraph.Master('/test'), [name])
 
 
 def memory_of(pid):

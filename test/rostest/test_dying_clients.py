@@ -17,7 +17,7 @@ from gazebo_msgs.srv import (
     SpawnModelRequest,
 )
 from nav_msgs.msg import Odometry
-from programs import find_program
+from programs import find_program, kill_node
 from raw_client import (
     answer,
     connection,
@@ -95,6 +95,7 @@ class DyingClientsTest(OwnServerTest):
                     f'robot_{i}',
                     '-y',
                     str(3 * i + 3),
+                    f'__name:=killed_{i}',
                 ],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
@@ -103,7 +104,7 @@ class DyingClientsTest(OwnServerTest):
                 while 'Calling service' not in client.stdout.readline():
                     self.assertIsNone(client.poll())
                 time.sleep(0.01 * i)  # each one at a later phase
-                client.kill()
+                kill_node(client, f'/killed_{i}')
         self.assert_neighbour_drives()
         self.assertTrue(self.spawn('another', BOX, pose(x=-8.0)).success)
 
@@ -164,7 +165,7 @@ class DyingClientsTest(OwnServerTest):
 
     def test_a_stopped_process(self):
         with subprocess.Popen(
-            ['rostopic', 'echo', '/gazebo/link_states'],
+            ['rostopic', 'echo', '/gazebo/link_states', '__name:=stopped'],
             stdout=subprocess.PIPE,
             text=True,
         ) as client:
@@ -172,7 +173,7 @@ class DyingClientsTest(OwnServerTest):
                 self.assertIsNone(client.poll())
             os.kill(client.pid, signal.SIGSTOP)
             self.assert_neighbour_drives()
-            client.kill()
+            kill_node(client, '/stopped')
         self._assert_server_is_unaffected()
 
     def test_many_clients_calling_at_once(self):

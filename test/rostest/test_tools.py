@@ -1,6 +1,7 @@
 """The ROS tools listed in doc/interface.md are found by rosrun and work with the simulator."""
 
 import re
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
@@ -45,7 +46,7 @@ class ToolsTest(SimulatorTest):
         )
         self.addCleanup(echo.stdout.close)
         self.addCleanup(echo.wait)
-        self.addCleanup(echo.terminate)
+        self.addCleanup(echo.send_signal, signal.SIGINT)  # at others it stays registered
         wait_until(lambda: 'Translation: [' in echo.stdout.readline(), 'a transform')
 
     def test_view_frames_draws_the_tree(self):
