@@ -14,7 +14,11 @@ from rosnode import rosnode_ping
 from simulator import wait_until
 
 STARTS = 4  # at most
-CRASH = re.compile(r'rviz-\d+\] (process )?has died.*?exit code (-6|-11|134|139),', re.S)
+CRASH = re.compile(  # also of a required one
+    r'(\x1b\[31m)?(=*REQUIRED process )?\[rviz-\d+\] (process )?has died'
+    r'.*?exit code (-6|-11|134|139),',
+    re.S,
+)
 READY_SERVICE = '/rviz/reload_shaders'  # the first service after its window
 CONFIG = Path(__file__).resolve().parents[2] / 'config' / 'rosbots.rviz'
 SAVED = '.rviz/default.rviz'  # in a home folder: what RViz opens without an argument
