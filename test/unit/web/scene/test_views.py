@@ -1,6 +1,7 @@
 """Views of a browser: by buttons and keys, and by no other browser's."""
 
 import math
+from contextlib import ExitStack
 
 import numpy as np
 import pytest
@@ -146,8 +147,9 @@ def test_a_report_from_before_the_first_view_is_no_reason_to_leave_it(browser, s
 
 def test_who_comes_below_the_ground_is_told_nothing_but_the_first_view(looking, page, site):
     first, _ = page._start.choose()
-    with Browser(site.address) as other:
+    with ExitStack() as left:
         with page._lock:  # it is told late
+            other = left.enter_context(Browser(site.address))
             other.wait_until(lambda: len(site.get_clients()) == 2)
             client = site.get_clients()[max(site.get_clients())]
             report(other, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0))
