@@ -1,6 +1,7 @@
 """Shared code of tests of the running simulator: services, and waiting for conditions."""
 
 import contextlib
+import random
 import re
 import socket
 import time
@@ -44,10 +45,15 @@ def wait_until(condition, what, deadline=DEADLINE):
 
 
 def free_port():
-    """Return a port of this machine on which nothing listens, for another ROS master."""
-    with socket.socket() as probe:
-        probe.bind(('localhost', 0))
-        return probe.getsockname()[1]
+    """Return a port of this machine on which nothing listens, for another ROS master.
+
+    Linux gives it to nobody who asks for any port, so none takes it before the master is there.
+    """
+    while True:
+        port = random.SystemRandom().randrange(20000, 32768)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(('localhost', port))
+            return port
 
 
 def proxy(name, service_type, node='/gazebo'):
