@@ -8,10 +8,11 @@ from pathlib import Path
 
 import rospy
 from programs import ran
-from simulator import DEADLINE, SimulatorTest, wait_until
+from simulator import DEADLINE, SimulatorTest, pose, wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = (ROOT / 'doc' / 'interface.md').read_text(encoding='utf-8')
+PRINTED = re.compile(r'Translation: \[(\S+), (\S+), ')  # by tf_echo: x and y [m]
 # Documented there as missing, or as part of further packages.
 NOT_THERE = {'rqt_graph'}
 OPTIONAL = {
@@ -40,14 +41,16 @@ class ToolsTest(SimulatorTest):
                 self.assertEqual(found, package not in NOT_THERE)
 
     def test_tf_echo_prints_the_pose_of_the_robot(self):
-        self.spawn()
+        self.spawn(at=pose(x=1.0, y=-2.0))
         echo = subprocess.Popen(
             ['rosrun', 'tf', 'tf_echo', 'odom', 'base_link'], stdout=subprocess.PIPE, text=True
         )
         self.addCleanup(echo.stdout.close)
         self.addCleanup(echo.wait)
         self.addCleanup(echo.send_signal, signal.SIGINT)  # at others it stays registered
-        wait_until(lambda: 'Translation: [' in echo.stdout.readline(), 'a transform')
+        shown = wait_until(lambda: PRINTED.search(echo.stdout.readline()), 'a transform')
+        for printed, spawned in zip(shown.groups(), (1.0, -2.0), strict=True):
+            self.assertAlmostEqual(float(printed), spawned, delta=0.1)  # it rocks as it lands
 
     def test_view_frames_draws_the_tree(self):
         self.spawn()
