@@ -300,7 +300,7 @@ class ControllerTopicsTest(ControllersTest):
         wait_until(lambda: reports and (reports[-1].p, reports[-1].i_clamp) == (55.0, 3.0), 'p')
         self.publisher('/arm/joint1_position_controller/command', Float64).publish(0.5)
         states = self.collect('/arm/joint_states', JointState)
-        wait_until(lambda: states and abs(states[-1].effort[0]) > 0.5, 'effort')
+        wait_until(lambda: any(abs(state.effort[0]) > 0.5 for state in list(states)), 'effort')
         stop = self.publisher('/arm/stop', Bool)
         stop.publish(True)
         wait_until(lambda: states[-1].effort[0] == 0.0, 'the stop')
