@@ -28,7 +28,7 @@ from .panels import (
     add_look,
 )
 from .polled import Polled
-from .scene import Ground, GroundClicks, Models, SceneView, StartView, look
+from .scene import Ground, GroundClicks, Models, SceneView, StartView
 from .simulator import Simulator
 from .site import Site
 
@@ -207,10 +207,7 @@ class Page:
         with self._site.atomic():
             camera.position, camera.look_at = self._start.choose()
         for client in self._new:
-            eye, target = self._start.choose(client.camera.aspect)
-            self._ground.watch(client, eye, target)
-            with client.atomic():
-                look(client.camera, eye, target)
+            self._ground.begin(client, *self._start.choose(client.camera.aspect))
         self._new.clear()
 
     def _hear(self, motion: ShownMotion) -> None:

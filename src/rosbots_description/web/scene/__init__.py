@@ -11,7 +11,7 @@ from .recordings import PATIENCE, BrowserRecording, SceneRecording, VideoRecordi
 from .scene import SceneView
 from .selection import Selection
 from .start_view import StartView
-from .views import ViewPanel, look
+from .views import ViewPanel
 
 __all__ = [
     'OVERLAYS',
@@ -29,7 +29,6 @@ __all__ = [
     'VideoRecording',
     'ViewPanel',
     'link_node',
-    'look',
     'node',
     'place',
     'pose_of',

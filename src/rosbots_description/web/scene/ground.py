@@ -24,22 +24,22 @@ class Ground(Panel):
     def __init__(self, models: Models) -> None:
         self._models = models
         self._lowest: float | None = None  # height of an eye [m]
-        # First views that browsers have not reported yet: eye and target [m].
-        self._expected: WeakKeyDictionary[viser.ClientHandle, tuple[Vector, Vector]] = (
+        # First views that browsers have not reported yet: eye, target [m], and when they were told.
+        self._expected: WeakKeyDictionary[viser.ClientHandle, tuple[Vector, Vector, float]] = (
             WeakKeyDictionary()
         )
         self._lock = threading.Lock()  # viser reports several views at once, in threads
 
-    def watch(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
-        """Watch a browser from its first view on; what it reports before is not its own.
+    def begin(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
+        """Tell a browser its first view, and watch it; what it reports before is not its own.
 
         Args:
             client: the browser.
-            eye, target: of the view that it is told now, in the world [m].
+            eye, target: of the view, in the world [m].
         """
         with self._lock:
-            self._expected[client] = eye, target
-        client.camera.on_update(self._lift)
+            client.camera.on_update(self._lift)
+            self._tell(client.camera, eye, target)
 
     def apply(self, _change: SceneChange) -> None:
         """Look for grounds: planes that face upwards."""
@@ -55,19 +55,29 @@ class Ground(Panel):
 
     def _lift(self, camera: viser.CameraHandle) -> None:
         with self._lock:  # else an old report, looked at late, would move it from a newer view
+            first = self._expected.get(camera.client)
+            if first is not None and camera.update_timestamp == first[2]:
+                return  # viser has what the browser was told, not yet what it reports
             x, y, z = map(float, camera.position)
             lowest = self._lowest
             is_below = lowest is not None and z < lowest - TOLERANCE
-            first = self._expected.get(camera.client)
             if first is not None:
-                if np.allclose(camera.position, first[0], atol=NEAR):
+                eye, target, _ = first
+                if np.allclose((x, y, z), eye, atol=NEAR):
                     self._expected.pop(camera.client, None)
                 elif is_below:
-                    with camera.client.atomic():
-                        look(camera, *first)
+                    self._tell(camera, eye, target)
             elif lowest is not None and is_below:
                 tx, ty, tz = map(float, camera.look_at)
                 if (tx, ty) == (x, y):
                     tz = lowest - 1.0  # straight ahead would be nowhere
                 with camera.client.atomic():
                     look(camera, (x, y, lowest), (tx, ty, tz))
+
+    def _tell(self, camera: viser.CameraHandle, eye: Vector, target: Vector) -> None:
+        """Tell a first view, and expect it to be reported if it is another than the present one."""
+        before = camera.update_timestamp
+        with camera.client.atomic():
+            look(camera, eye, target)
+        if camera.update_timestamp != before:
+            self._expected[camera.client] = eye, target, camera.update_timestamp

@@ -145,6 +145,36 @@ def test_a_report_from_before_the_first_view_is_no_reason_to_leave_it(browser, s
     assert eye == pytest.approx([1.0, 2.0, 1.0 + CLEARANCE])
 
 
+def test_a_view_that_was_told_is_not_taken_for_a_report(browser, simulator, page, client):
+    simulator.change(SceneChange(True, (model('a', 1), model('ground', 3, Plane()))))
+    browser.wait_until(lambda: page._ground._expected)
+    catch_up(browser, page, 'told')
+    first, _ = page._start.choose()
+    browser.messages.clear()
+    with page._ground._lock:  # both are looked at late, the second when the first is answered
+        for eye in ((-5.0, 0.0, -3.0), (-5.0, 0.0, -2.0)):
+            report(browser, eye, (0.0, 0.0, 0.0))
+            browser.wait_until(lambda eye=eye: tuple(client.camera.position) == eye)
+    browser.wait_until(lambda: browser.received('SetCameraLookAtMessage'))
+    catch_up(browser, page, 'told again')
+    eye, _ = turned(browser, page, lambda: report(browser, (-5.0, 0.0, -1.0), (0.0, 0.0, 0.0)))
+    assert eye == pytest.approx(first)
+
+
+def test_who_comes_at_the_first_view_may_leave_it(looking, page, site):
+    first, target = page._start.choose()
+    with ExitStack() as left:
+        with page._lock:  # it comes late
+            other = left.enter_context(Browser(site.address))
+            other.wait_until(lambda: len(site.get_clients()) == 2)
+            client = site.get_clients()[max(site.get_clients())]
+            report(other, first, target)
+            other.wait_until(lambda: client.camera.position == pytest.approx(first))
+        other.wait_until(lambda: client.client_id in page.browsers)
+        eye, _ = turned(other, page, lambda: report(other, (1.0, 2.0, -3.0), (0.0, 0.0, 0.0)))
+        assert eye == pytest.approx([1.0, 2.0, 1.0 + CLEARANCE])
+
+
 def test_who_comes_below_the_ground_is_told_nothing_but_the_first_view(looking, page, site):
     first, _ = page._start.choose()
     with ExitStack() as left:
