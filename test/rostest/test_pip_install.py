@@ -4,13 +4,17 @@
 It takes half a minute, mostly downloads; it is skipped without a package index.
 """
 
+import json
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+from importlib.metadata import distribution
 from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import rostest
 from programs import ran_merged
@@ -32,6 +36,18 @@ NO_INDEX = re.compile(r'Temporary failure in name resolution|NewConnectionError|
 EXAMPLE = re.compile(r'```python\n(.*?)```\n\n```text\n(.*?)```', re.DOTALL)
 
 
+def wheels():
+    """Return pip's options to find the wheel of PyBullet that set-up has made.
+
+    Where PyPI has a wheel, pip prefers that; elsewhere it would build one, for ten minutes.
+    """
+    origin = distribution('pybullet').read_text('direct_url.json')  # of PEP 610
+    if origin is None:
+        return ()
+    wheel = Path(url2pathname(urlsplit(json.loads(origin)['url']).path))
+    return ('--find-links', str(wheel.parent))
+
+
 class PipInstallTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -50,7 +66,9 @@ class PipInstallTest(unittest.TestCase):
         cls.venv = cls.folder / 'venv'
         subprocess.run(['/usr/bin/python3', '-m', 'venv', str(cls.venv)], check=True)
         installed = cls.run_python(
-            '-m', 'pip', 'install', '--disable-pip-version-check', '--no-input', f'{source}[gym]'
+            *('-m', 'pip', 'install', '--disable-pip-version-check', '--no-input'),
+            *wheels(),
+            f'{source}[gym]',
         )
         if installed.returncode and NO_INDEX.search(installed.stdout):
             print('SKIPPED pip_install: no package index can be reached')
