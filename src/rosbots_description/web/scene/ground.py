@@ -1,6 +1,7 @@
 """Keeps the cameras of browsers above the ground."""
 
 import threading
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -18,16 +19,22 @@ NEAR = 1e-2  # [m] from an eye that a browser was told to the one that it report
 TOLERANCE = 1e-3  # [m] of an eye that was put there: browsers round
 
 
+class FirstView(NamedTuple):
+    """What a browser was told when it came."""
+
+    eye: Vector  # in the world [m]
+    target: Vector
+    told: float  # when viser's camera got it [s, wall]
+
+
 class Ground(Panel):
     """Lifts a camera that its browser has moved below the lowest ground, if there is one."""
 
     def __init__(self, models: Models) -> None:
         self._models = models
         self._lowest: float | None = None  # height of an eye [m]
-        # First views that browsers have not reported yet: eye, target [m], and when they were told.
-        self._expected: WeakKeyDictionary[viser.ClientHandle, tuple[Vector, Vector, float]] = (
-            WeakKeyDictionary()
-        )
+        # Those that browsers have not reported yet.
+        self._expected: WeakKeyDictionary[viser.ClientHandle, FirstView] = WeakKeyDictionary()
         self._lock = threading.Lock()  # viser reports several views at once, in threads
 
     def begin(self, client: viser.ClientHandle, eye: Vector, target: Vector) -> None:
@@ -56,17 +63,16 @@ class Ground(Panel):
     def _lift(self, camera: viser.CameraHandle) -> None:
         with self._lock:  # else an old report, looked at late, would move it from a newer view
             first = self._expected.get(camera.client)
-            if first is not None and camera.update_timestamp == first[2]:
+            if first is not None and camera.update_timestamp == first.told:
                 return  # viser has what the browser was told, not yet what it reports
             x, y, z = map(float, camera.position)
             lowest = self._lowest
             is_below = lowest is not None and z < lowest - TOLERANCE
             if first is not None:
-                eye, target, _ = first
-                if np.allclose((x, y, z), eye, atol=NEAR):
+                if np.allclose((x, y, z), first.eye, atol=NEAR):
                     self._expected.pop(camera.client, None)
                 elif is_below:
-                    self._tell(camera, eye, target)
+                    self._tell(camera, first.eye, first.target)
             elif lowest is not None and is_below:
                 tx, ty, tz = map(float, camera.look_at)
                 if (tx, ty) == (x, y):
@@ -80,4 +86,4 @@ class Ground(Panel):
         with camera.client.atomic():
             look(camera, eye, target)
         if camera.update_timestamp != before:
-            self._expected[camera.client] = eye, target, camera.update_timestamp
+            self._expected[camera.client] = FirstView(eye, target, camera.update_timestamp)
