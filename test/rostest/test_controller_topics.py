@@ -316,6 +316,8 @@ class ControllerTopicsTest(ControllersTest):
             },
         )
         self.run_controllers([JSC, 'swing'])
+        listed = self.call('list_controllers', ListControllers).controller
+        self.assertEqual({one.name: one.type for one in listed}['swing'], 'my_robot/Swing')
         states = self.collect('/arm/joint_states', JointState)
 
         def swings_about(centre):
