@@ -2,6 +2,7 @@
 
 import re
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import actionlib
@@ -109,46 +110,44 @@ GAINS = 'gazebo_ros_control/pid_gains/flap'  # of the plugin that moves the flap
 class ControllerTopicsTest(ControllersTest):
     def test_names_and_types_are_those_of_the_recordings(self):
         for scenario, recorded in RECORDED.items():
-            with self.subTest(scenario):
-                try:
-                    self._check_scenario(recorded)
-                finally:
-                    self._clean()
-                    wait_until(lambda: not managers(), 'the services to go')
+            with self.subTest(scenario), self._spawned(recorded) as before:
+                if recorded['by_plugin']:
+                    self.assertEqual(added(before), recorded['by_plugin'])
+                idle = graph()
+                controllers = recorded['parameters']
+                for name in controllers:
+                    self.assertTrue(self.load(name), self.errors)
+                self.assertEqual(set(self.states().values()), {'initialized'})
+                self.assertTrue(self.switch(start=controllers))
+                self.assertEqual(added(idle), recorded['by_controllers'])
+                if 'list' in recorded:
+                    listed = self.call('list_controllers', ListControllers).controller
+                    self.assertEqual([as_dict(one) for one in listed], recorded['list'])
+                self.assertTrue(self.switch(stop=controllers))
+                for name in controllers:
+                    self.assertTrue(self.unload(name))
+                self.assertEqual(graph(), idle)
 
-    def _check_scenario(self, recorded):
+    @contextmanager
+    def _spawned(self, recorded):
+        """Spawn the robot of a recording, give the graph before it, and delete it at the end."""
         interface, controllers = recorded['interface'], recorded['parameters']
         before = graph()
-        if interface:
-            self.spawn_robot(
-                ARM.replace('EffortJointInterface', interface),
-                '/arm',
-                {**controllers, 'gazebo_ros_control/pid_gains': recorded['pid_gains']},
-            )
-        else:
-            self.spawn_robot(BURGER, '', controllers)
-        wait_until(
-            lambda: (
-                len(added(before)['services'])
-                >= len((recorded['by_plugin'] or {}).get('services', MANAGER))
-            ),
-            'all services',
-        )
-        if recorded['by_plugin']:
-            self.assertEqual(added(before), recorded['by_plugin'])
-        idle = graph()
-        for name in controllers:
-            self.assertTrue(self.load(name), self.errors)
-        self.assertEqual(set(self.states().values()), {'initialized'})
-        self.assertTrue(self.switch(start=controllers))
-        self.assertEqual(added(idle), recorded['by_controllers'])
-        if 'list' in recorded:
-            listed = self.call('list_controllers', ListControllers).controller
-            self.assertEqual([as_dict(one) for one in listed], recorded['list'])
-        self.assertTrue(self.switch(stop=controllers))
-        for name in controllers:
-            self.assertTrue(self.unload(name))
-        self.assertEqual(graph(), idle)
+        try:
+            if interface:
+                self.spawn_robot(
+                    ARM.replace('EffortJointInterface', interface),
+                    '/arm',
+                    {**controllers, 'gazebo_ros_control/pid_gains': recorded['pid_gains']},
+                )
+            else:
+                self.spawn_robot(BURGER, '', controllers)
+            services = (recorded['by_plugin'] or {}).get('services', MANAGER)
+            wait_until(lambda: len(added(before)['services']) >= len(services), 'all services')
+            yield before
+        finally:
+            self._clean()
+            wait_until(lambda: not managers(), 'the services to go')
 
     def test_drives_and_sensors_of_a_car_are_on_the_wire(self):
         self.spawn_robot(CAR, '/car', {**CAR_CONTROLLERS, GAINS: {'p': 0.0}})
