@@ -6,6 +6,7 @@ Publishes:
 
 import contextlib
 import logging
+import struct
 from collections.abc import Iterator
 
 import numpy as np
@@ -21,6 +22,8 @@ from .topic import Topic
 logger = logging.getLogger(__name__)
 
 _CLOCK_SIZE = 8  # [bytes] of a serialized message: seconds and nanoseconds
+_MESSAGE = struct.Struct('<3I')  # its size, seconds and nanoseconds
+_MANY = 20  # numpy takes as long as Python for so many; at real time there are few at once
 
 
 class ClockTopic(Topic, PreRunPublisher):
@@ -33,26 +36,22 @@ class ClockTopic(Topic, PreRunPublisher):
 
     def publish_ahead(self, last: int) -> None:
         """Publish the times of all due steps up to `last`."""
-        clock, due = self._world.clock, np.arange(self.due, last + 1)
+        clock = self._world.clock
+        times: range | list[int] = range(
+            clock.ns_at(self.due), clock.ns_at(last) + 1, clock.step_ns
+        )
         if self._period_ns:
-            due = np.fromiter(self._due_until(last), np.int64)
-        # vectorised: a loop takes 1 us for each
-        times = clock.ns_at(0) + due * clock.step_ns
-        messages = np.empty((len(times), 3), '<u4')
-        messages[:, 0] = _CLOCK_SIZE
-        messages[:, 1] = secs = times // NANOSECONDS
-        messages[:, 2] = times - secs * NANOSECONDS
-        publish_serialized(self._publisher, messages.tobytes())
-        self._last_ns = int(times[-1])
-        self.due = self._first_after(int(due[-1]))
+            times = list(self._due_times(last))
+        publish_serialized(self._publisher, serialize_clock(times))
+        self._last_ns = times[-1]
+        self.due = self._next_due()
 
-    def _due_until(self, last: int) -> Iterator[int]:
-        """Yield the due steps up to `last`, one for each period."""
-        step = self.due
-        while step <= last:
-            yield step
-            self._last_ns = self._world.clock.ns_at(step)
-            step = self._first_after(step)
+    def _due_times(self, last: int) -> Iterator[int]:
+        """Yield the times of the due steps up to `last`, one for each period [ns]."""
+        while self.due <= last:
+            self._last_ns = self._world.clock.ns_at(self.due)
+            self.due = self._next_due()
+            yield self._last_ns
 
     def schedule(self) -> None:
         """Publish after the period, if there are subscribers."""
@@ -61,14 +60,28 @@ class ClockTopic(Topic, PreRunPublisher):
         # After a jump back, publish at once: upstream would wait for the old time.
         self._last_ns = self._last_ns if self._last_ns <= clock.now_ns else 0
         if self.due != NEVER:
-            self.due = self._first_after(clock.steps)
+            self.due = max(clock.steps + 1, self._next_due())
 
-    def _first_after(self, step: int) -> int:
-        """Return the first step after `step` that is a period after the last published one."""
-        clock = self._world.clock
-        if not self._period_ns:
-            return step + 1
-        return max(step + 1, clock.first_step_after(self._last_ns + self._period_ns - 1))
+    def _next_due(self) -> int:
+        """Return the first step that is a period, or at all, later than the last published."""
+        later = max(0, self._period_ns - 1)
+        return self._world.clock.first_step_after(self._last_ns + later)
+
+
+def serialize_clock(times: range | list[int]) -> bytes:
+    """Return messages with these times [ns], each with its length prefix."""
+    if len(times) < _MANY:
+        pack, unit = _MESSAGE.pack, NANOSECONDS
+        return b''.join([pack(_CLOCK_SIZE, *divmod(time, unit)) for time in times])
+    messages = np.empty((len(times), 3), '<u4')
+    messages[:, 0] = _CLOCK_SIZE
+    if isinstance(times, range):
+        numbers = np.arange(times.start, times.stop, times.step)
+    else:
+        numbers = np.array(times)
+    messages[:, 1] = seconds = numbers // NANOSECONDS
+    messages[:, 2] = numbers - seconds * NANOSECONDS
+    return messages.tobytes()
 
 
 def advertise_clock(server: Server) -> None:
