@@ -3,7 +3,7 @@
 from .camera_keys import HANDLERS, CameraKeys
 from .choice import Choice
 from .descriptions import chosen_links, friction, list_html, parts_html, scoped_name, state_html
-from .layout import BAR, CLOSE_SHEET, OPAQUE, PAD, lay_out
+from .layout import BAR, LAY_OUT, OPAQUE, PAD, lay_out
 from .notices import Notices, left_out, show_notice
 from .panel import Allow, Panel, Value, attempt, fill
 from .rate_limit import RateLimit
@@ -14,8 +14,8 @@ from .world_name import SET_TITLE, WorldName
 
 __all__ = [
     'BAR',
-    'CLOSE_SHEET',
     'HANDLERS',
+    'LAY_OUT',
     'OPAQUE',
     'PAD',
     'SET_TITLE',

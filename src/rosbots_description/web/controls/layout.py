@@ -1,8 +1,9 @@
 """The layout of the panel: a bar of icons, one line for each label, a sheet on phones.
 
-Viser lays out each control in a row of its own. The style sheet finds rows by viser's elements,
-and where they are by empty elements of the page: what is in one container with `BAR` is a bar of
-icons, what is in one with `PAD` ends with a cross of five buttons. Without it, all works in rows.
+Viser lays out each control in a row of its own. `MARK` finds rows by viser's elements, and where
+they are by empty elements of the page: what is in one container with `BAR` is a bar of icons, what
+is in one with `PAD` ends with a cross of five buttons. It marks them by attributes, for the style
+sheet. Without these, all works in rows.
 """
 
 import viser
@@ -11,10 +12,9 @@ BAR, PAD = '<div class="bar"></div>', '<div class="pad"></div>'
 NARROW = '(max-width: 36em)'  # of pages: viser then has a sheet at the bottom
 WIDTH = 384.0  # of the panel otherwise [pixels]
 
-_BAR, _PAD = (f'div:has(> div > .{name})' for name in ('bar', 'pad'))
+_BAR, _PAD = '[data-holds=bar]', '[data-holds=pad]'
 _ICON = f'{_BAR} > div > .mantine-Button-root'
-_ROW = '.mantine-Flex-root:has(> div > .mantine-Text-root > label[for])'
-_CHECK = f'{_ROW}:has(.mantine-Checkbox-root)'
+_ROW, _CHECK = '[data-row]', '[data-row=check]'
 _TAB, _SMALL_TAB = '[data-dock-strip] > [data-dock-tab]', '.mantine-Tabs-tab'
 
 # A label has a line of its own if it needs one; what is too long keeps its end.
@@ -35,27 +35,27 @@ _ROWS = f"""
 _ICONS = f"""
 {_BAR} {{ display: flex; flex-wrap: wrap; align-items: center; gap: 0.3em; padding: 0.4em 0.6em 0 }}
 {_BAR} > div {{ flex: 0 0 100%; min-width: 0; margin: 0 !important; padding: 0 !important }}
-{_BAR} > div:has(> .bar), {_BAR} > div:empty, {_BAR} > div:has(> [hidden]) {{ display: none }}
-{_BAR} > div:has(> .clock) {{ flex: 1 1 auto }}
-{_BAR} > div:has(> .mantine-Button-root) {{ flex: 0 0 auto }}
-{_BAR} > div:has([role=tablist]) {{ flex-basis: calc(100% + 1.2em); margin: 0 -0.6em !important }}
-{_BAR} > div:has(> .mantine-Flex-root .mantine-NumberInput-root) {{ flex: 0 0 4em }}
-{_BAR} > div:has(> .mantine-Flex-root .mantine-Select-root) {{ flex: 1 1 4em }}
+{_BAR} > [data-cell=bar], {_BAR} > div:empty, {_BAR} > [data-cell=hidden] {{ display: none }}
+{_BAR} > [data-cell=clock] {{ flex: 1 1 auto }}
+{_BAR} > [data-cell=icon] {{ flex: 0 0 auto }}
+{_BAR} > [data-cell=tabs] {{ flex-basis: calc(100% + 1.2em); margin: 0 -0.6em !important }}
+{_BAR} > [data-cell=number] {{ flex: 0 0 4em }}
+{_BAR} > [data-cell=choice] {{ flex: 1 1 4em }}
 {_BAR} > div > .mantine-Flex-root > div:first-child {{ position: absolute !important; opacity: 0;
   pointer-events: none }}
 {_ICON} {{ position: relative; width: 2em; height: 2em !important; padding: 0 !important;
   overflow: visible; font-size: 1em }}
 {_ICON} .mantine-Button-inner {{ overflow: visible }}
 {_ICON} .mantine-Button-section {{ margin: 0; font-size: 1.15em; text-align: left }}
-{_BAR} > div:has(> .bar) ~ div ~ div > .mantine-Button-root {{ color: inherit;
+{_BAR} > [data-cell=bar] ~ div ~ div > .mantine-Button-root {{ color: inherit;
   background: transparent }}
-{_BAR} > div:has(> .bar) ~ div ~ div > .mantine-Button-root:hover {{
+{_BAR} > [data-cell=bar] ~ div ~ div > .mantine-Button-root:hover {{
   background: var(--mantine-color-default-hover) }}
 {_ICON}[data-disabled] {{ opacity: 0.35 }}
 {_ICON} .mantine-Button-label {{ position: absolute; top: calc(100% + 0.3em); left: 0; z-index: 50;
   height: auto; max-width: 20em; padding: 0.3em 0.6em; border-radius: 0.25em; background: #212529;
   color: #fff; font-size: 0.8rem; font-weight: 400; opacity: 0; pointer-events: none }}
-{_BAR} > div:has(.mantine-Select-root) ~ div .mantine-Button-label {{ left: auto; right: 0 }}
+{_BAR} > [data-cell=choice] ~ div .mantine-Button-label {{ left: auto; right: 0 }}
 {_ICON}:hover .mantine-Button-label, {_ICON}:focus-visible .mantine-Button-label {{ opacity: 1 }}"""
 
 _CROSS = f"""
@@ -67,7 +67,7 @@ _CROSS = f"""
 {_PAD} > div:nth-last-child(2) {{ grid-column: 3 }}"""
 
 _TABS = f"""
-[data-dock-strip]:has(> [data-dock-tab]) {{ background: none !important;
+[data-strip] {{ background: none !important;
   border-bottom: 1px solid var(--mantine-color-default-border) }}
 {_TAB}, {_SMALL_TAB} {{ flex: 1 1 auto; flex-direction: column; justify-content: center;
   gap: 0.2em; height: 4em !important; padding: 0 0.2em !important; font-size: 0.7rem }}
@@ -89,12 +89,50 @@ OPAQUE = 'canvas[data-engine] { opacity: 1 !important }'
 
 STYLE = f'<style>{_ROWS}{_ICONS}{_CROSS}{_TABS}{_SHEET}{OPAQUE}</style>'
 
+# What is in one cell of a bar, and by what that is found.
+_CELLS = {
+    'bar': '> .bar',
+    'hidden': '> [hidden]',
+    'clock': '> .clock',
+    'icon': '> .mantine-Button-root',
+    'number': '> .mantine-Flex-root .mantine-NumberInput-root',
+    'choice': '> .mantine-Flex-root .mantine-Select-root',
+    'tabs': '[role=tablist]',
+}
+
+# Runs whenever something appears in the page. The style sheet could find all of it by `:has`; but
+# then a browser styles the whole panel anew each time the clock shows another second.
+MARK = f"""if (!document.body.dataset.marked) {{
+  document.body.dataset.marked = 'yes';
+  const all = selector => document.querySelectorAll(selector);
+  // Not what is there already: that would be a change, for all who watch the page.
+  const put = (one, name, value) => one.dataset[name] === value || (one.dataset[name] = value);
+  const mark = () => {{
+    for (const one of all('.bar, .pad'))
+      put(one.parentElement.parentElement, 'holds', one.className);
+    for (const cell of all('{_BAR} > div'))
+      put(cell, 'cell', Object.entries({_CELLS}).find(
+        ([_, content]) => cell.querySelector(`:scope ${{content}}`))?.[0] ?? '');
+    for (const row of all('.mantine-Flex-root'))
+      if (row.querySelector(':scope > div > .mantine-Text-root > label[for]'))
+        put(row, 'row', row.querySelector('.mantine-Checkbox-root') ? 'check' : 'field');
+      else delete row.dataset.row;
+    for (const strip of all('[data-dock-strip]'))
+      strip.toggleAttribute('data-strip', strip.querySelector(':scope > [data-dock-tab]') !== null);
+  }};
+  new MutationObserver(mark).observe(document.body, {{childList: true, subtree: true}});
+  mark();
+}}"""
+
 # The sheet begins closed; viser opens it. The element is in it, below its handle.
-CLOSE_SHEET = (  # which the page's policy allows; without double quotes, as it is in an attribute
+CLOSE_SHEET = (
     f"if (matchMedia('{NARROW}').matches && !document.body.dataset.sheet) "
     "{ document.body.dataset.sheet = 'closed'; this.closest(`[style*='position: fixed']`)"
     "?.querySelector(`[style*='cursor: pointer']`)?.click() }"
 )
+
+# The handlers of a page, which its policy allows; without double quotes, as they are in attributes.
+LAY_OUT = (MARK, CLOSE_SHEET)
 
 
 def lay_out(gui: viser.GuiApi) -> None:
@@ -102,4 +140,5 @@ def lay_out(gui: viser.GuiApi) -> None:
     gui.configure_theme(show_logo=False, show_share_button=False, control_width='large')
     gui.main_panel.dock_right()
     gui.main_panel.set_width(WIDTH)
-    gui.add_html(f'{STYLE}<img hidden src="data:," onerror="{CLOSE_SHEET}">')
+    handlers = ''.join(f'<img hidden src="data:," onerror="{handler}">' for handler in LAY_OUT)
+    gui.add_html(STYLE + handlers)

@@ -17,7 +17,7 @@ from pathlib import Path
 import viser
 import zstandard
 
-from ..controls import CLOSE_SHEET, HANDLERS, SET_TITLE
+from ..controls import HANDLERS, LAY_OUT, SET_TITLE
 
 _NOTEBOOKS = 'http://127.0.0.1:* http://localhost:* vscode-webview:'
 _SCRIPT = re.compile(r'<script\b([^>]*)>(.*?)</script>', re.DOTALL)
@@ -29,7 +29,7 @@ _ALPHABET = bytes(code for code in range(0x21, 0x7F) if code not in b'"&<>\'`')
 def page_headers(is_framed: bool = False) -> dict[str, str]:
     """Return the headers of every response; pages of this machine may frame it, if it says so."""
     scripts = ' '.join(
-        _hash(script) for script in (*_client_scripts(), *HANDLERS, CLOSE_SHEET, SET_TITLE)
+        _hash(script) for script in (*_client_scripts(), *HANDLERS, *LAY_OUT, SET_TITLE)
     )
     policy = {
         'default-src': "'none'",
