@@ -40,7 +40,7 @@ knock = socket.create_connection(('127.0.0.1', int(sys.argv[1])))
 knock.sendall(b'GET / HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nUpgrade: websocket\\r\\n'
               b'Connection: Upgrade\\r\\nSec-WebSocket-Version: 13\\r\\n'
               b'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\\r\\n\\r\\n')
-print(knock.recv(1000).decode())"""
+print(knock.makefile().read())"""
 
 
 def models():
