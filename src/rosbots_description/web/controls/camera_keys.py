@@ -2,15 +2,17 @@
 
 import viser
 
+from .text import running
+
 # Viser's camera listens at the document, its hotkeys one element further in, where a key can be
-# kept from the camera. HTML that comes into a running page can run a script only on an event.
+# kept from the camera.
 _FREE = 'document.documentElement.onkeydown = null'
 _KEPT = (
     'document.documentElement.onkeydown = event => '
     '{ if (/^(arrow.+|[wasd])$/i.test(event.key)) event.stopPropagation() }'
 )
 HANDLERS = (_FREE, _KEPT)  # which the page's policy allows
-FREE, KEPT = (f'<img hidden src="data:," onerror="{handler}">' for handler in HANDLERS)
+FREE, KEPT = map(running, HANDLERS)
 
 
 class CameraKeys:

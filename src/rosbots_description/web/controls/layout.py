@@ -8,6 +8,8 @@ sheet. Without these, all works in rows.
 
 import viser
 
+from .text import running
+
 BAR, PAD = '<div class="bar"></div>', '<div class="pad"></div>'
 NARROW = '(max-width: 36em)'  # of pages: viser then has a sheet at the bottom
 WIDTH = 384.0  # of the panel otherwise [pixels]
@@ -131,8 +133,7 @@ CLOSE_SHEET = (
     "?.querySelector(`[style*='cursor: pointer']`)?.click() }"
 )
 
-# The handlers of a page, which its policy allows; without double quotes, as they are in attributes.
-LAY_OUT = (MARK, CLOSE_SHEET)
+LAY_OUT = (MARK, CLOSE_SHEET)  # which the page's policy allows
 
 
 def lay_out(gui: viser.GuiApi) -> None:
@@ -140,5 +141,4 @@ def lay_out(gui: viser.GuiApi) -> None:
     gui.configure_theme(show_logo=False, show_share_button=False, control_width='large')
     gui.main_panel.dock_right()
     gui.main_panel.set_width(WIDTH)
-    handlers = ''.join(f'<img hidden src="data:," onerror="{handler}">' for handler in LAY_OUT)
-    gui.add_html(STYLE + handlers)
+    gui.add_html(STYLE + ''.join(map(running, LAY_OUT)))

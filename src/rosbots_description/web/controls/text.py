@@ -35,6 +35,16 @@ def markup(text: str, most: int = MOST) -> str:
     return html.escape(plain(text, most))
 
 
+def running(script: str, title: str = '') -> str:
+    """Return HTML that runs a script, which finds a title in `this.title`.
+
+    HTML that comes into a running page can run one only on an event. The script is one of ours,
+    without double quotes, which the page's policy allows by its hash.
+    """
+    titled = f' title="{markup(title)}"' if title else ''
+    return f'<img hidden src="data:,"{titled} onerror="{script}">'
+
+
 class Words:
     """Lines of text, and a table of texts, on the page."""
 

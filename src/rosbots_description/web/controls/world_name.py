@@ -4,9 +4,8 @@ import viser
 
 from ...sim.description import SceneChange
 from .panel import Panel
-from .text import markup, plain
+from .text import plain, running
 
-# HTML that comes into a running page can run a script only on an event.
 SET_TITLE = 'document.title = this.title'  # which the page's policy allows
 
 
@@ -28,6 +27,4 @@ class WorldName(Panel):
         if name != self._name:
             self._name = name
             self._gui.set_panel_label(plain(name))
-            self._html.content = (
-                f'<img hidden src="data:," title="{markup(name)}" onerror="{SET_TITLE}">'
-            )
+            self._html.content = running(SET_TITLE, name)
