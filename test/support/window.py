@@ -222,6 +222,7 @@ class FakeSignals:
 
     def __init__(self, topics=()):
         self.topics, self.open_curves, self.samples = dict(topics), set(), {}
+        self.opened = []  # every curve that was opened, in order
         self.fault = ''
 
     def signal_topics(self):
@@ -230,6 +231,7 @@ class FakeSignals:
     def open(self, curve):
         if self.fault:
             raise SimError(self.fault)
+        self.opened.append(curve)
         self.open_curves.add(curve)
 
     def close(self, curve):

@@ -77,6 +77,11 @@ def test_an_option_that_is_not_there_says_so(arguments, capsys):
         ['world', '-p', '0'],
         ['model', '-m', 'box', '-x', '0'],
         ['physics', '-u', '0'],
+        ['model', '-w', 'default', '-l'],
+        ['physics', '-w', 'default', '-i', '3'],
+        ['stats', '-w', 'default'],
+        ['topic', '-w', 'default', '-l'],
+        ['world', '-w', 'default', '-p', '1'],
     ],
 )
 def test_without_a_master_one_sentence_says_what_to_start(arguments, monkeypatch, capsys):

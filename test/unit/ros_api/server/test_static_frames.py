@@ -7,6 +7,7 @@ import pytest
 from support.fake_drive import make, run
 from support.wire import Wire, transforms
 
+from rosbots_description.ros_api.adapters import drives
 from rosbots_description.ros_api.server.static_frames import StaticFrames, from_root
 from rosbots_description.sim.core.transforms import Pose, compose, from_rpy
 from rosbots_description.sim.runtime.outputs import FrameTransform
@@ -94,6 +95,17 @@ def test_wheel_transforms_are_left_to_a_state_publisher(monkeypatch, readers, ho
     assert plugin.wheel_transform.wanted is wanted
     run(plugin, 20)
     assert bool(wheels) is wanted
+
+
+def test_state_publisher_that_the_master_knows_counts_before_it_is_connected(monkeypatch):
+    wire = Wire(monkeypatch)
+    monkeypatch.setattr(drives, 'subscribers', lambda *_: ({'/rsp'}, set()))
+    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
+    frames = wire.join(plugin).server.static_frames
+    wire.publishers['/tf'].read()
+    assert plugin.wheel_transform.wanted
+    frames.add('/rsp', transforms(('base_footprint', 'base_link', HELD)))
+    assert not plugin.wheel_transform.wanted
 
 
 def test_new_state_publisher_counts_before_its_notification(monkeypatch):

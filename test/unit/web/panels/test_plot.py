@@ -80,6 +80,7 @@ def test_a_curve_is_added_once(browser, signals):
     browser.click('Add curve')
     browser.read(0.2)
     assert len(plots(browser)) == 1
+    assert signals.opened == [SPEED]
 
 
 def test_what_cannot_be_plotted_is_told(browser, signals, complaints):
