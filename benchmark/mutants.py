@@ -7,7 +7,9 @@ function run, those of the file's own folder and the quickest first, up to the f
 constant counts as called where its name is read.
 
 A mutant that no test notices survived: it is to become a test, or to show that the line is not
-needed. Tests that fail without any change are left out.
+needed. Tests that fail without any change are left out. The change is made in this process and its
+forks: a program that a test starts, such as that of the renderer, has none. So try a survivor by
+`./rosbots test` as well.
 
     ./rosbots bench mutants [--sample N] [--seed S] [--own] [--lines] [--again OUTPUT] [FOLDER…]
 """
