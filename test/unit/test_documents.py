@@ -77,6 +77,14 @@ def test_the_architecture_is_one_page():
     assert (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8').count('\n') < 90
 
 
+def test_an_example_node_has_fewer_than_100_lines():
+    text = (ROOT / 'doc' / 'example_nodes.md').read_text(encoding='utf-8')
+    nodes = re.findall(r'^## .*: `(\w+\.py)`$', text, re.M)
+    assert len(nodes) == 6
+    for name in nodes:
+        assert (ROOT / 'scripts' / name).read_text(encoding='utf-8').count('\n') < 100, name
+
+
 def test_the_architecture_names_rooms_that_exist():
     text = (ROOT / 'doc' / 'architecture.md').read_text(encoding='utf-8')
     package = ROOT / 'src' / 'rosbots_description'
