@@ -50,6 +50,7 @@ def test_a_curve_is_chosen_by_topic_and_field(browser, signals):
     browser.wait_until(lambda: browser.value('Curve') == SPEED)
     browser.click('Add curve')
     browser.wait_until(lambda: signals.open_curves == {SPEED})
+    assert signals.opened == [SPEED]
 
 
 def test_curves_are_drawn_until_they_are_unchecked(browser, signals, panel):
@@ -107,8 +108,12 @@ def test_a_reset_of_time_begins_anew(browser, signals, panel):
     signals.samples = {SPEED: [(9.9, 0.0, 0.5)]}
     browser.wait_until(lambda: last_values(panel) == [0.5])
     panel.move(clock(0.0))
-    browser.wait_until(lambda: np.isnan(last_values(panel)[0]))
-    signals.samples = {SPEED: [(0.0, 0.0, 0.75)]}
+    browser.wait_until(lambda: list(panel._plot.data[0]) == [0.0])  # the times that are shown
+    panel.move(clock(10.0))
+    browser.wait_until(lambda: panel._plot.data[0][-1] == 10.0)
+    assert np.isnan(panel._plot.data[1]).all()  # what was sent before does not come again
+    assert panel._time(None, arrival=0.0) == 0.0
+    signals.samples = {SPEED: [(10.0, 0.0, 0.75)]}
     browser.wait_until(lambda: last_values(panel) == [0.75])
 
 
