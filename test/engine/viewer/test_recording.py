@@ -42,16 +42,26 @@ def test_recording_is_a_page_with_the_motion_and_does_not_change_it(tmp_path, mo
 
 def test_recording_in_a_notebook_is_a_frame_that_runs_nothing_of_the_notebook():
     with World.empty() as world:
-        hooks = list(world.schedule._hooks)
         recording = world.recording()
         assert recording._repr_html_() == '<p>This recording is not over.</p>'
         world.run(seconds=0.1)
         recording.close()
-        recording.close()
         shown = recording._repr_html_()
         assert shown.startswith('<iframe srcdoc="')
         assert 'sandbox="allow-scripts"' in shown
+
+
+def test_a_recording_that_has_ended_has_left_the_world_and_may_end_again():
+    with World.empty() as world:
+        hooks = list(world.schedule._hooks)
+        recording = world.recording()
+        assert world.schedule._hooks != hooks
+        recording.close()
+        html = recording.html
+        world.run(seconds=0.1)
+        recording.close()
         assert world.schedule._hooks == hooks
+        assert recording.html == html
 
 
 def test_recording_ends_with_its_world(tmp_path):
