@@ -21,6 +21,19 @@ def frames():
     return StaticFrames()
 
 
+@pytest.fixture
+def wire(monkeypatch):
+    return Wire(monkeypatch)
+
+
+def join_wheels(wire):
+    """Return a drive that publishes its wheels, with a reader of /tf, and the static frames."""
+    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
+    frames = wire.join(plugin).server.static_frames
+    wire.publishers['/tf'].read()
+    return plugin, frames
+
+
 def test_edge_stays_without_external_transforms_of_its_child(frames):
     frames.add('/rsp', transforms(('base_link', 'laser', HELD)))
     edge = FrameTransform('odom', 'base_link', MOVED)
@@ -80,11 +93,8 @@ def test_transform_that_is_not_finite_is_left_out(frames, pose):
         ({'/plotter'}, '/camera', True),  # one reads joint states, another holds a camera
     ],
 )
-def test_wheel_transforms_are_left_to_a_state_publisher(monkeypatch, readers, holder, wanted):
-    wire = Wire(monkeypatch)
-    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
-    frames = wire.join(plugin).server.static_frames
-    wire.publishers['/tf'].read()
+def test_wheel_transforms_are_left_to_a_state_publisher(wire, readers, holder, wanted):
+    plugin, frames = join_wheels(wire)
     for node in readers:
         wire.publishers['/joint_states'].read(node)
     run(plugin, 20)
@@ -97,22 +107,16 @@ def test_wheel_transforms_are_left_to_a_state_publisher(monkeypatch, readers, ho
     assert bool(wheels) is wanted
 
 
-def test_state_publisher_that_the_master_knows_counts_before_it_is_connected(monkeypatch):
-    wire = Wire(monkeypatch)
+def test_state_publisher_that_the_master_knows_counts_before_it_is_connected(wire, monkeypatch):
     monkeypatch.setattr(drives, 'subscribers', lambda *_: ({'/rsp'}, set()))
-    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
-    frames = wire.join(plugin).server.static_frames
-    wire.publishers['/tf'].read()
+    plugin, frames = join_wheels(wire)
     assert plugin.wheel_transform.wanted
     frames.add('/rsp', transforms(('base_footprint', 'base_link', HELD)))
     assert not plugin.wheel_transform.wanted
 
 
-def test_new_state_publisher_counts_before_its_notification(monkeypatch):
-    wire = Wire(monkeypatch)
-    plugin = make(publishWheelTF='true', publishWheelJointState='true', publishOdomTF='false')
-    frames = wire.join(plugin).server.static_frames
-    wire.publishers['/tf'].read()
+def test_new_state_publisher_counts_before_its_notification(wire):
+    plugin, frames = join_wheels(wire)
     frames.add('/rsp', transforms(('base_footprint', 'base_link', HELD)))
     states = wire.publishers['/joint_states']
     states.impl.subscriber_listeners.clear()
